@@ -1,0 +1,60 @@
+// From a scene and a mesh to a program that evaluators run: all stages of the pipeline in their order.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "curves/arrangement.h"
+#include "mesh/weld.h"
+#include "pvg/program.h"
+#include "pvg/status.h"
+#include "scene/scene.h"
+#include "solve/knots.h"
+#include "solve/system.h"
+#include "solve/voronoi.h"
+
+namespace pvg {
+
+/// The selected mesh as a triangle soup: raw vertices, not welded.
+struct MeshInput {
+    std::span<const Point> points;
+    std::span<const Point> normals;  ///< as many as points, or empty: none in the file
+    std::span<const Face> faces;
+};
+
+struct BuildOptions {
+    int threads = 0;  ///< 0: all cores; the result does not depend on it
+    /// Called at the start of each stage with its name ("curves", "knots", "voronoi", "system", "basis").
+    std::function<void(const std::string&)> on_stage;
+};
+
+/// One domain's solution.
+struct SolvedDomain {
+    Knots knots;
+    Voronoi voronoi;
+    System system;
+    Eigen::MatrixXd lambda;  ///< knots x channels
+};
+
+/// Everything from the welded input to the evaluators' program.
+struct Build {
+    WeldedMesh welded;
+    SurfaceMap base_map;      ///< from the surface that curves are drawn on to the welded one
+    double unit = 1;          ///< mesh units of one length unit
+    Arrangement arrangement;
+    SurfaceMap map;           ///< from the imprinted surface to the welded one
+    std::vector<SolvedDomain> domains;
+
+    Program program;                       ///< one field a domain; output vertices are arrangement.output's
+    std::vector<Face> corner_normal;       ///< per output face and corner: shading normal of the program, or none: nothing moves there
+    std::vector<std::pair<std::string, double>> seconds;  ///< per stage, in order
+};
+
+/// Throws Error(bad_input) that names the scene's file and place.
+Build build(const Scene& scene, const MeshInput& mesh, const BuildOptions& options, Warnings& warnings);
+
+}  // namespace pvg
