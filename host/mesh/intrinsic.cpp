@@ -1,5 +1,6 @@
-// Edge flips after Bobenko and Springborn, "A discrete Laplace-Beltrami operator for simplicial surfaces" (2007): any order of flips ends at
-// the intrinsic Delaunay triangulation. Areas from lengths after Kahan, "Miscalculating area and angles of a needle-like triangle" (2014).
+// Edge flips after Bobenko and Springborn, "A discrete Laplace-Beltrami operator for simplicial surfaces" (2007): any order of
+// flips ends at the intrinsic Delaunay triangulation. Areas from lengths after Kahan, "Miscalculating area and angles of a
+// needle-like triangle" (2014).
 #include "mesh/intrinsic.h"
 
 #include <algorithm>
@@ -13,14 +14,18 @@ int next(int halfedge) { return Surface::next(halfedge); }
 int prev(int halfedge) { return Surface::prev(halfedge); }
 
 double area_from_lengths(double a, double b, double c) {
-    if (a < b) std::swap(a, b);
-    if (a < c) std::swap(a, c);
-    if (b < c) std::swap(b, c);
+    if (a < b)
+        std::swap(a, b);
+    if (a < c)
+        std::swap(a, c);
+    if (b < c)
+        std::swap(b, c);
     const double square = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c));
     return square > 0 ? 0.25 * std::sqrt(square) : 0;
 }
 
-/// Of the angle opposite to the halfedge: twice the face's area (sine) and half the law of cosines (cosine), both times the adjacent lengths.
+/// Of the angle opposite to the halfedge: twice the face's area (sine) and half the law of cosines (cosine), both times the
+/// adjacent lengths.
 struct OppositeAngle {
     double sine = 0;
     double cosine = 0;
@@ -36,7 +41,8 @@ OppositeAngle opposite_angle(const IntrinsicTriangulation& triangulation, int ha
 
 /// sin(alpha + beta) >= 0, without a division, so that triangles without area take part.
 bool is_delaunay(const IntrinsicTriangulation& triangulation, int halfedge, int twin) {
-    // Far above the rounding of the four products, far below any weight that matters; without it cocircular quads could flip for ever.
+    // Far above the rounding of the four products, far below any weight that matters; without it cocircular quads could flip for
+    // ever.
     constexpr double tolerance = 1e-13;
     const OppositeAngle a = opposite_angle(triangulation, halfedge), b = opposite_angle(triangulation, twin);
     return a.sine * b.cosine + a.cosine * b.sine >= -tolerance * a.scale * b.scale;
@@ -51,7 +57,8 @@ Eigen::Vector2d apex(const IntrinsicTriangulation& triangulation, int halfedge) 
 
 void join(IntrinsicTriangulation& triangulation, int a, int b) {
     triangulation.twin[a] = b;
-    if (b != none) triangulation.twin[b] = a;
+    if (b != none)
+        triangulation.twin[b] = a;
 }
 
 /// Quad i, m, j, k around the edge i - j becomes the triangles (m, j, k) and (k, i, m).
@@ -107,12 +114,14 @@ int make_delaunay(IntrinsicTriangulation& triangulation) {
     std::vector<char> queued(halfedges, 0);
     const auto push = [&](int h) {
         const int t = triangulation.twin[h];
-        if (t == none || queued[h] || queued[t]) return;
+        if (t == none || queued[h] || queued[t])
+            return;
         queued[h] = 1;
         queue.push_back(h);
     };
     for (int h = halfedges - 1; h >= 0; --h)
-        if (triangulation.twin[h] != none && h < triangulation.twin[h]) push(h);
+        if (triangulation.twin[h] != none && h < triangulation.twin[h])
+            push(h);
 
     // Flips end by theory (the Dirichlet energy falls with each); the cap only guards against rounding.
     const long long cap = 100LL * halfedges + 1000;
@@ -123,8 +132,10 @@ int make_delaunay(IntrinsicTriangulation& triangulation) {
         queued[h] = 0;
         const int t = triangulation.twin[h];
         // A face glued to itself cannot be flipped and never has to be: the two opposite angles are its equal acute ones.
-        if (t == none || h / 3 == t / 3 || triangulation.lengths[h / 3][h % 3] <= 0) continue;
-        if (is_delaunay(triangulation, h, t)) continue;
+        if (t == none || h / 3 == t / 3 || triangulation.lengths[h / 3][h % 3] <= 0)
+            continue;
+        if (is_delaunay(triangulation, h, t))
+            continue;
         const int f = h / 3, g = t / 3;
         flip(triangulation, h, t);
         ++flips;
@@ -134,16 +145,19 @@ int make_delaunay(IntrinsicTriangulation& triangulation) {
 }
 
 Eigen::SparseMatrix<double> cotan_stiffness(const IntrinsicTriangulation& triangulation, int vertex_count) {
-    // Weights of a face whose area rounds to zero stay finite: a cap's vertex is then tied to the line it lies on, as in the limit.
+    // Weights of a face whose area rounds to zero stay finite: a cap's vertex is then tied to the line it lies on, as in the
+    // limit.
     constexpr double smallest_sine = 1e-10;
     std::vector<Eigen::Triplet<double>> entries;
     entries.reserve(4 * triangulation.twin.size());
     for (int h = 0; h < static_cast<int>(triangulation.twin.size()); ++h) {
         const int i = triangulation.faces[h / 3][h % 3], j = triangulation.faces[h / 3][next(h) % 3];
-        if (i == j) continue;
+        if (i == j)
+            continue;
         const auto& length = triangulation.lengths[h / 3];
         const double longest = std::max({length[0], length[1], length[2]});
-        if (longest <= 0) continue;
+        if (longest <= 0)
+            continue;
         const OppositeAngle angle = opposite_angle(triangulation, h);
         const double weight = 0.5 * angle.cosine / std::max(angle.sine, smallest_sine * longest * longest);
         entries.emplace_back(i, j, -weight);

@@ -16,7 +16,8 @@ struct ShapeMesh {
     std::vector<Face> faces;
 };
 
-/// shape: cuboid, sphere, plane, torus, vase, stele. vertices: about how many welded vertices (>= 8). Throws Error(usage) for an unknown shape.
+/// shape: cuboid, sphere, plane, torus, vase, stele. vertices: about how many welded vertices (>= 8). Throws Error(usage) for an
+/// unknown shape.
 ShapeMesh make_shape(const std::string& shape, int vertices);
 /// The names above.
 const std::vector<std::string>& shape_names();

@@ -22,10 +22,12 @@ RefinedSurface split_edges(const Surface& surface, const std::vector<char>& mark
     SurfaceMap map = identity_map(surface);
     std::vector<int> middle(surface.halfedge_count(), none);
     for (int h = 0; h < surface.halfedge_count(); ++h) {
-        if (!marked[h] || middle[h] != none) continue;
+        if (!marked[h] || middle[h] != none)
+            continue;
         const int a = surface.origin(h), b = surface.target(h);
         middle[h] = static_cast<int>(points.size());
-        if (surface.twin(h) != none) middle[surface.twin(h)] = middle[h];
+        if (surface.twin(h) != none)
+            middle[surface.twin(h)] = middle[h];
         points.push_back(0.5 * (surface.point(a) + surface.point(b)));
         map.vertex.push_back({{a, b, none}, {0.5, 0.5, 0}});
     }
@@ -75,7 +77,8 @@ RefinedSurface split_edges(const Surface& surface, const std::vector<char>& mark
 
 RefinedSurface subdivide(const Surface& surface, int levels) {
     const double predicted = surface.vertex_count() + surface.face_count() * (std::pow(4.0, levels) - 1) / 2;
-    if (predicted > vertex_limit) refuse(predicted);
+    if (predicted > vertex_limit)
+        refuse(predicted);
     RefinedSurface result{surface, identity_map(surface)};
     for (int level = 0; level < levels; ++level) {
         RefinedSurface finer = split_edges(result.surface, std::vector<char>(result.surface.halfedge_count(), 1));
@@ -85,16 +88,19 @@ RefinedSurface subdivide(const Surface& surface, int levels) {
 }
 
 RefinedSurface subdivide_to(const Surface& surface, double max_edge) {
-    if (!(max_edge > 0) || !std::isfinite(max_edge)) throw Error(ErrorKind::bad_input, "max_edge must be a positive length");
+    if (!(max_edge > 0) || !std::isfinite(max_edge))
+        throw Error(ErrorKind::bad_input, "max_edge must be a positive length");
     // A triangle ends as about area / (max_edge^2 / 4) vertices, two triangles a vertex.
     double predicted = 0;
     for (int f = 0; f < surface.face_count(); ++f) {
         double longest = 0;
         for (int k = 0; k < 3; ++k) longest = std::max(longest, surface.length(3 * f + k));
         const double halvings = std::max(0.0, std::ceil(std::log2(longest / max_edge)));
-        predicted += std::max(0.5, std::min(std::pow(4.0, halvings) / 2, 4 * surface.face_area(f) / (max_edge * max_edge) + longest / max_edge));
+        predicted += std::max(
+            0.5, std::min(std::pow(4.0, halvings) / 2, 4 * surface.face_area(f) / (max_edge * max_edge) + longest / max_edge));
     }
-    if (predicted > vertex_limit) refuse(predicted);
+    if (predicted > vertex_limit)
+        refuse(predicted);
 
     RefinedSurface result{surface, identity_map(surface)};
     while (true) {
@@ -105,10 +111,12 @@ RefinedSurface subdivide_to(const Surface& surface, double max_edge) {
                 marked[h] = 1;
                 any = true;
             }
-        if (!any) return result;
+        if (!any)
+            return result;
         RefinedSurface finer = split_edges(result.surface, marked);
         result = {std::move(finer.surface), compose(result.map, finer.map)};
-        if (result.surface.vertex_count() > vertex_limit) refuse(result.surface.vertex_count());
+        if (result.surface.vertex_count() > vertex_limit)
+            refuse(result.surface.vertex_count());
     }
 }
 

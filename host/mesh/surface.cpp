@@ -25,19 +25,24 @@ Surface::Surface(std::vector<Point> points, std::vector<Face> faces) : points_(s
     for (int f = 0; f < face_count(); ++f) {
         const Face& face = faces_[f];
         for (int v : face)
-            if (v < 0 || v >= vertices) refuse("face " + std::to_string(f) + ": vertex " + std::to_string(v) + " is not below " + std::to_string(vertices));
-        if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) refuse("face " + std::to_string(f) + " repeats a vertex");
+            if (v < 0 || v >= vertices)
+                refuse("face " + std::to_string(f) + ": vertex " + std::to_string(v) + " is not below " +
+                       std::to_string(vertices));
+        if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])
+            refuse("face " + std::to_string(f) + " repeats a vertex");
     }
 
     std::unordered_map<std::uint64_t, int> by_ends;
     by_ends.reserve(static_cast<std::size_t>(halfedge_count()));
     for (int h = 0; h < halfedge_count(); ++h)
         if (!by_ends.emplace(edge_key(origin(h), target(h)), h).second)
-            refuse("edge " + std::to_string(origin(h)) + " - " + std::to_string(target(h)) + " has two faces of the same orientation");
+            refuse("edge " + std::to_string(origin(h)) + " - " + std::to_string(target(h)) +
+                   " has two faces of the same orientation");
     twin_.assign(halfedge_count(), none);
     for (int h = 0; h < halfedge_count(); ++h) {
         const auto found = by_ends.find(edge_key(target(h), origin(h)));
-        if (found != by_ends.end()) twin_[h] = found->second;
+        if (found != by_ends.end())
+            twin_[h] = found->second;
     }
 
     outgoing_.assign(vertices, none);
@@ -45,17 +50,20 @@ Surface::Surface(std::vector<Point> points, std::vector<Face> faces) : points_(s
     for (int h = 0; h < halfedge_count(); ++h) {
         ++valence[origin(h)];
         int& chosen = outgoing_[origin(h)];
-        if (chosen == none || (twin_[h] == none && twin_[chosen] != none)) chosen = h;
+        if (chosen == none || (twin_[h] == none && twin_[chosen] != none))
+            chosen = h;
     }
     for (int v = 0; v < vertices; ++v) {
-        if (outgoing_[v] == none) continue;
+        if (outgoing_[v] == none)
+            continue;
         int seen = 0;
         int h = outgoing_[v];
         do {
             ++seen;
             h = twin_[prev(h)];
         } while (h != none && h != outgoing_[v] && seen <= valence[v]);
-        if (seen != valence[v]) refuse("the faces around vertex " + std::to_string(v) + " are not one fan");
+        if (seen != valence[v])
+            refuse("the faces around vertex " + std::to_string(v) + " are not one fan");
     }
 }
 
@@ -80,7 +88,8 @@ Point Surface::face_normal(int face) const {
 double Surface::angle_sum(int vertex) const {
     double sum = 0;
     int h = outgoing_[vertex];
-    if (h == none) return 0;
+    if (h == none)
+        return 0;
     const int first = h;
     do {
         sum += angle_between(points_[target(h)] - points_[vertex], points_[origin(prev(h))] - points_[vertex]);
@@ -93,12 +102,14 @@ Point Surface::position(const SurfacePoint& at) const {
     const auto& [a, b, c] = faces_[at.face];
     // A vertex must come back bit for bit.
     for (int k = 0; k < 3; ++k)
-        if (at.bary[k] == 1.0) return points_[faces_[at.face][k]];
+        if (at.bary[k] == 1.0)
+            return points_[faces_[at.face][k]];
     return at.bary[0] * points_[a] + at.bary[1] * points_[b] + at.bary[2] * points_[c];
 }
 
 double Surface::diagonal() const {
-    if (faces_.empty()) return 0;
+    if (faces_.empty())
+        return 0;
     Point low = points_[faces_[0][0]], high = low;
     for (const Face& face : faces_)
         for (int v : face) {
@@ -110,10 +121,12 @@ double Surface::diagonal() const {
 
 int Surface::halfedge_between(int from, int to) const {
     int h = outgoing_[from];
-    if (h == none) return none;
+    if (h == none)
+        return none;
     const int first = h;
     do {
-        if (target(h) == to) return h;
+        if (target(h) == to)
+            return h;
         h = twin_[prev(h)];
     } while (h != none && h != first);
     return none;  // on a border the last edge of the fan exists only as to -> from
@@ -124,7 +137,8 @@ std::vector<int> face_components(const Surface& surface, int* count) {
     std::vector<int> stack;
     int found = 0;
     for (int seed = 0; seed < surface.face_count(); ++seed) {
-        if (component[seed] != none) continue;
+        if (component[seed] != none)
+            continue;
         component[seed] = found;
         stack.assign(1, seed);
         while (!stack.empty()) {
@@ -132,14 +146,16 @@ std::vector<int> face_components(const Surface& surface, int* count) {
             stack.pop_back();
             for (int k = 0; k < 3; ++k) {
                 const int other = surface.twin(3 * f + k);
-                if (other == none || component[other / 3] != none) continue;
+                if (other == none || component[other / 3] != none)
+                    continue;
                 component[other / 3] = found;
                 stack.push_back(other / 3);
             }
         }
         ++found;
     }
-    if (count) *count = found;
+    if (count)
+        *count = found;
     return component;
 }
 
@@ -153,7 +169,8 @@ std::vector<Point> vertex_normals(const Surface& surface) {
     }
     for (Point& n : normals) {
         const double size = n.norm();
-        if (size > 0) n /= size;
+        if (size > 0)
+            n /= size;
     }
     return normals;
 }

@@ -34,11 +34,13 @@ PositionKey key_of(const Point& p) {
 }
 
 std::uint64_t edge_key(int a, int b) {
-    return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(std::min(a, b))) << 32) | static_cast<std::uint32_t>(std::max(a, b));
+    return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(std::min(a, b))) << 32) |
+           static_cast<std::uint32_t>(std::max(a, b));
 }
 
 /// Twins of halfedges where exactly two oppositely oriented faces meet; everything else is cut.
-std::vector<int> manifold_twins(const std::vector<Face>& faces, const std::vector<Point>& points, std::vector<std::array<Point, 2>>& cut) {
+std::vector<int> manifold_twins(const std::vector<Face>& faces, const std::vector<Point>& points,
+                                std::vector<std::array<Point, 2>>& cut) {
     std::unordered_map<std::uint64_t, std::vector<int>> by_edge;
     by_edge.reserve(faces.size() * 2);
     for (int h = 0; h < static_cast<int>(3 * faces.size()); ++h) {
@@ -49,7 +51,8 @@ std::vector<int> manifold_twins(const std::vector<Face>& faces, const std::vecto
     for (int h = 0; h < static_cast<int>(twin.size()); ++h) {
         const int from = faces[h / 3][h % 3], to = faces[h / 3][(h + 1) % 3];
         const std::vector<int>& all = by_edge[edge_key(from, to)];
-        if (all.size() == 1) continue;
+        if (all.size() == 1)
+            continue;
         const int other = all[0] == h ? all[1] : all[0];
         const bool opposite = faces[other / 3][other % 3] == to;
         if (all.size() == 2 && opposite)
@@ -78,7 +81,8 @@ WeldedMesh weld(std::span<const Point> points, std::span<const Face> faces, Warn
             const int raw = faces[f][k];
             if (welded[raw] == none) {
                 const auto [at, fresh] = by_position.emplace(key_of(points[raw]), static_cast<int>(shared.size()));
-                if (fresh) shared.push_back(points[raw]);
+                if (fresh)
+                    shared.push_back(points[raw]);
                 welded[raw] = at->second;
             }
             face[k] = welded[raw];
@@ -93,7 +97,8 @@ WeldedMesh weld(std::span<const Point> points, std::span<const Face> faces, Warn
         result.face_raw.push_back(static_cast<int>(f));
     }
     if (left_out > 0)
-        warnings.push_back(std::to_string(left_out) + (left_out == 1 ? " triangle has" : " triangles have") + " no area; left as found and not decorated");
+        warnings.push_back(std::to_string(left_out) + (left_out == 1 ? " triangle has" : " triangles have") +
+                           " no area; left as found and not decorated");
 
     const std::vector<int> twin = manifold_twins(kept, shared, result.non_manifold_edges);
 
@@ -103,7 +108,8 @@ WeldedMesh weld(std::span<const Point> points, std::span<const Face> faces, Warn
     std::size_t pinched = 0;
     const std::size_t positions = shared.size();
     for (int h = 0; h < static_cast<int>(corner_vertex.size()); ++h) {
-        if (corner_vertex[h] != none) continue;
+        if (corner_vertex[h] != none)
+            continue;
         const int position = kept[h / 3][h % 3];
         int vertex = position;
         if (used[position]) {
@@ -116,7 +122,8 @@ WeldedMesh weld(std::span<const Point> points, std::span<const Face> faces, Warn
         int first = h;
         while (twin[first] != none) {
             const int before = Surface::next(twin[first]);
-            if (before == h) break;
+            if (before == h)
+                break;
             first = before;
         }
         for (int at = first; at != none && corner_vertex[at] == none; at = twin[Surface::prev(at)]) corner_vertex[at] = vertex;
@@ -127,8 +134,9 @@ WeldedMesh weld(std::span<const Point> points, std::span<const Face> faces, Warn
             result.raw_to_welded[result.face_raw[f]][k] = kept[f][k];
         }
     if (!result.non_manifold_edges.empty() || pinched > 0)
-        warnings.push_back("the surface is not manifold: cut at " + std::to_string(result.non_manifold_edges.size()) + " edges and apart into " +
-                           std::to_string(shared.size()) + " vertices at " + std::to_string(positions) + " positions");
+        warnings.push_back("the surface is not manifold: cut at " + std::to_string(result.non_manifold_edges.size()) +
+                           " edges and apart into " + std::to_string(shared.size()) + " vertices at " +
+                           std::to_string(positions) + " positions");
     result.surface = Surface(std::move(shared), std::move(kept));
     return result;
 }

@@ -10,10 +10,11 @@
 namespace pvg {
 namespace {
 
-/// n x n quads over the unit square, squeezed in y so that triangles are slivers, interior vertices jittered. Lifted onto a paraboloid by `lift`.
+/// n x n quads over the unit square, squeezed in y so that triangles are slivers, interior vertices jittered. Lifted onto a
+/// paraboloid by `lift`.
 Surface sliver_grid(int n, double squeeze, double lift, unsigned seed) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> jitter(-0.45, 0.45);
+    std::uniform_real_distribution<double> jitter(-0.24, 0.24);  // farther could fold a triangle over
     std::vector<Point> points;
     std::vector<Face> faces;
     for (int j = 0; j <= n; ++j)
@@ -42,7 +43,8 @@ double smallest_weight(const Eigen::SparseMatrix<double>& S, const Surface& surf
     double least = 0;
     for (int column = 0; column < S.outerSize(); ++column)
         for (Eigen::SparseMatrix<double>::InnerIterator entry(S, column); entry; ++entry)
-            if (entry.row() != column && !(surface.is_border_vertex(column) && surface.is_border_vertex(static_cast<int>(entry.row()))))
+            if (entry.row() != column &&
+                !(surface.is_border_vertex(column) && surface.is_border_vertex(static_cast<int>(entry.row()))))
                 least = std::min(least, -entry.value());
     return least;
 }
@@ -50,7 +52,8 @@ double smallest_weight(const Eigen::SparseMatrix<double>& S, const Surface& surf
 void expect_consistent(const IntrinsicTriangulation& t) {
     for (int h = 0; h < static_cast<int>(t.twin.size()); ++h) {
         const int w = t.twin[h];
-        if (w == none) continue;
+        if (w == none)
+            continue;
         ASSERT_EQ(t.twin[w], h);
         EXPECT_EQ(t.faces[h / 3][h % 3], t.faces[w / 3][(w + 1) % 3 == 0 ? w % 3 - 2 : w % 3 + 1]);
         EXPECT_EQ(t.lengths[h / 3][h % 3], t.lengths[w / 3][w % 3]);
@@ -132,14 +135,14 @@ TEST(Intrinsic, ClosedSurfaceWithEdgesFromAVertexToItself) {
     const auto S = cotan_stiffness(t, 4);
     EXPECT_LT((S * Eigen::VectorXd::Ones(4)).cwiseAbs().maxCoeff(), 1e-9);
     for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 4; ++j)
-            if (i != j) EXPECT_LE(S.coeff(i, j), 1e-9);
+        for (int j = 0; j < 4; ++j) EXPECT_TRUE(i == j || S.coeff(i, j) <= 1e-9) << i << " - " << j;
     EXPECT_NEAR(total(lumped_areas(t, 4)), surface.area(), 1e-9 * surface.area());
 }
 
 TEST(Intrinsic, TrianglesWithoutAreaStayFinite) {
     // Vertex 4 lies on the edge 0 - 2: one face is a cap without area; the flip removes it.
-    const Surface surface({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0}}, {{0, 1, 2}, {0, 2, 4}, {0, 4, 3}, {4, 2, 3}});
+    const Surface surface({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0}},
+                          {{0, 1, 2}, {0, 2, 4}, {0, 4, 3}, {4, 2, 3}});
     IntrinsicTriangulation t = intrinsic_triangulation(surface);
     make_delaunay(t);
     const auto S = cotan_stiffness(t, 5);
@@ -155,17 +158,21 @@ TEST(Intrinsic, SolutionOnSliversIsAsGoodAsOnTheRegularGrid) {
     make_delaunay(t);
     const int n = surface.vertex_count();
     const auto S = cotan_stiffness(t, n);
-    const auto exact = [&](int v) { return surface.point(v).x() * surface.point(v).x() - surface.point(v).y() * surface.point(v).y(); };
+    const auto exact = [&](int v) {
+        return surface.point(v).x() * surface.point(v).x() - surface.point(v).y() * surface.point(v).y();
+    };
     std::vector<int> unknown(n, none);
     int unknowns = 0;
     for (int v = 0; v < n; ++v)
-        if (!surface.is_border_vertex(v)) unknown[v] = unknowns++;
+        if (!surface.is_border_vertex(v))
+            unknown[v] = unknowns++;
     std::vector<Eigen::Triplet<double>> entries;
     Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
     for (int column = 0; column < n; ++column)
         for (Eigen::SparseMatrix<double>::InnerIterator e(S, column); e; ++e) {
             const int row = unknown[e.row()];
-            if (row == none) continue;
+            if (row == none)
+                continue;
             if (unknown[column] == none)
                 right[row] -= e.value() * exact(column);
             else
@@ -178,7 +185,8 @@ TEST(Intrinsic, SolutionOnSliversIsAsGoodAsOnTheRegularGrid) {
     const Eigen::VectorXd u = factor.solve(right);
     double worst = 0;
     for (int v = 0; v < n; ++v)
-        if (unknown[v] != none) worst = std::max(worst, std::abs(u[unknown[v]] - exact(v)));
+        if (unknown[v] != none)
+            worst = std::max(worst, std::abs(u[unknown[v]] - exact(v)));
     // Linear elements: interpolation error of order h^2 = 1e-3, of range 1.
     EXPECT_LT(worst, 1e-3);
 }
