@@ -1,6 +1,7 @@
 // Geodesic paths, circles and level sets as chains of surface points.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -18,8 +19,16 @@ struct SurfacePath {
 
 double length(const Surface& surface, const SurfacePath& path);
 
+/// A face whose closed triangle contains both points (coordinates up to 1e-12 count as 0), or none.
+int common_face(const Surface& surface, const SurfacePoint& a, const SurfacePoint& b);
+/// The coordinates of a point in another face that contains it.
+Eigen::Vector3d bary_in(const Surface& surface, int face, const SurfacePoint& at);
+
 /// The globally shortest path (exact). Throws Error(bad_input) when the points are on different components.
-SurfacePath shortest_path(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to);
+/// upper_bound: the length of some path between the two, where one is known (a straightened one, say): only the faces that a
+/// shorter one can cross are looked at.
+SurfacePath shortest_path(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to,
+                          double upper_bound = std::numeric_limits<double>::infinity());
 
 /// A locally shortest path: a face strip found by best-first search, pulled straight and straightened around
 /// its vertices until no vertex can be passed on a shorter side. Much faster than shortest_path; what splines interpolate along.
@@ -32,17 +41,22 @@ SurfacePoint point_along(const Surface& surface, const SurfacePath& path, double
 
 /// Exact distance at any surface point, from a field computed with keep_windows (+infinity where none reaches).
 /// sources: the same that the field was computed from.
-double distance_at(const Surface& surface, const GeodesicField& field, std::span<const GeodesicSource> sources, const SurfacePoint& at);
+double distance_at(const Surface& surface, const GeodesicField& field, std::span<const GeodesicSource> sources,
+                   const SurfacePoint& at);
 
 /// The exact path from a surface point back to its source, first point `at`, last the source.
-SurfacePath path_to_source(const Surface& surface, const GeodesicField& field, std::span<const GeodesicSource> sources, const SurfacePoint& at);
+SurfacePath path_to_source(const Surface& surface, const GeodesicField& field, std::span<const GeodesicSource> sources,
+                           const SurfacePoint& at);
 
-/// All loops (and border-to-border arcs, closed = false) where the exact distance equals `distance`, the sources on the left. Every crossing of
-/// a mesh edge is exact; inside a face arcs are sampled so that a chord is off by at most `tolerance` (mesh units).
-std::vector<SurfacePath> level_set(const Surface& surface, const GeodesicField& field, std::span<const GeodesicSource> sources, double distance, double tolerance);
+/// All loops (and border-to-border arcs, closed = false) where the exact distance equals `distance`, the sources on the left.
+/// Every crossing of a mesh edge is exact; inside a face arcs are sampled so that a chord is off by at most `tolerance` (mesh
+/// units).
+std::vector<SurfacePath> level_set(const Surface& surface, const GeodesicField& field, std::span<const GeodesicSource> sources,
+                                   double distance, double tolerance);
 
 /// The geodesic circle as one counter-clockwise loop that begins where the direction `start` leaves the centre.
 /// Throws Error(bad_input) with the largest radius that works when it is not one closed loop (meets a border, wraps, splits).
-SurfacePath geodesic_circle(const Surface& surface, const SurfacePoint& center, double radius, const SurfacePoint& start, double tolerance);
+SurfacePath geodesic_circle(const Surface& surface, const SurfacePoint& center, double radius, const SurfacePoint& start,
+                            double tolerance);
 
 }  // namespace pvg
