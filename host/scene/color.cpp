@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/LU>
+
 namespace pvg {
 namespace {
 
@@ -54,7 +56,8 @@ Color from_diffusion_space(const Color& diffused, ColorSpace space) {
     if (space == ColorSpace::srgb) {
         for (int c = 0; c < 3; ++c) result[c] = linear_from_srgb(diffused[c]);
     } else if (space == ColorSpace::oklab) {
-        // The inverses of the two matrices above, not the rounded ones of the publication, so that a round trip is exact to rounding.
+        // The inverses of the two matrices above, not the rounded ones of the publication, so that a round trip is exact to
+        // rounding.
         static const Eigen::Matrix3d lms_from_oklab = oklab_from_lms().inverse();
         static const Eigen::Matrix3d linear_from_lms = lms_from_linear().inverse();
         const Eigen::Vector3d lms = lms_from_oklab * diffused.head<3>();
@@ -68,11 +71,14 @@ Color blend_colors(const Color& under, const Color& over, BlendMode mode) {
     const double below = std::clamp(under[3], 0.0, 1.0);
     const double alpha = above + below * (1 - above);
     Color result = Color::Zero();
-    if (alpha <= 0) return result;
+    if (alpha <= 0)
+        return result;
     for (int c = 0; c < 3; ++c) {
         double mixed = over[c];
-        if (mode == BlendMode::multiply) mixed = under[c] * over[c];
-        if (mode == BlendMode::add) mixed = under[c] + over[c];
+        if (mode == BlendMode::multiply)
+            mixed = under[c] * over[c];
+        if (mode == BlendMode::add)
+            mixed = under[c] + over[c];
         result[c] = (above * (1 - below) * over[c] + above * below * mixed + (1 - above) * below * under[c]) / alpha;
     }
     result[3] = alpha;

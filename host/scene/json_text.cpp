@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <set>
 #include <vector>
 
 #include "pvg/status.h"
@@ -32,9 +31,10 @@ public:
     using binary_t = json::binary_t;
 
     json document;
-    std::string error;            ///< what is wrong, empty when nothing is
+    std::string error;  ///< what is wrong, empty when nothing is
     std::size_t error_offset = 0;
     bool has_offset = false;
+    std::size_t error_back = 0;  ///< characters between the error and what was read last, when there is no offset
 
     bool null() { return put(nullptr); }
     bool boolean(bool value) { return put(value); }
@@ -49,7 +49,8 @@ public:
     bool end_array() { return close(); }
     bool key(string_t& value) {
         if (open_.back()->contains(value)) {
-            return stop("the key " + json(value).dump(-1, ' ', false, json::error_handler_t::replace) + " appears twice in one object");
+            return stop("the key " + json(value).dump(-1, ' ', false, json::error_handler_t::replace) +
+                        " appears twice in one object");
         }
         key_ = std::move(value);
         return true;
@@ -58,15 +59,22 @@ public:
         std::string what = exception.what();
         // "[json.exception...] parse error at line 1, column 2: reason": the place is given in front, in characters.
         const std::size_t bracket = what.find("] ");
-        if (bracket != std::string::npos) what.erase(0, bracket + 2);
+        if (bracket != std::string::npos)
+            what.erase(0, bracket + 2);
         if (what.rfind("parse error", 0) == 0) {
             const std::size_t colon = what.find(": ");
-            if (colon != std::string::npos) what.erase(0, colon + 2);
+            if (colon != std::string::npos)
+                what.erase(0, colon + 2);
         }
+        // Bytes that are no UTF-8 must not travel in a message.
+        if (what.find("UTF-8") != std::string::npos)
+            what.erase(std::min(what.size(), what.find("; last read")));
         error = what;
         error_offset = position > 0 ? position - 1 : 0;
-        // Numbers too large for a double come without a place.
+        // A number too large for a double comes without a place; it ends before the character that was read last.
         has_offset = exception.id != 406;
+        if (!has_offset)
+            error_back = 1;
         return false;
     }
 
@@ -145,7 +153,8 @@ nlohmann::json parse_json_text(std::string_view text, const std::string& name) {
     const CountingIterator end{text.data() + text.size(), &reached};
     if (!nlohmann::json::sax_parse(begin, end, &builder)) {
         const auto read = static_cast<std::size_t>(reached - text.data());
-        const std::size_t offset = builder.has_offset ? builder.error_offset : (read > 0 ? read - 1 : 0);
+        const std::size_t offset =
+            builder.has_offset ? builder.error_offset : (read > builder.error_back ? read - 1 - builder.error_back : 0);
         throw Error(ErrorKind::bad_input, name + ": " + place(text, offset) + ": " + builder.error);
     }
     return std::move(builder.document);
@@ -154,11 +163,14 @@ nlohmann::json parse_json_text(std::string_view text, const std::string& name) {
 std::string read_text_file(const std::filesystem::path& file) {
     std::error_code code;
     const auto status = std::filesystem::status(file, code);
-    if (!std::filesystem::exists(status)) throw Error(ErrorKind::bad_input, file.string() + ": no such file");
-    if (!std::filesystem::is_regular_file(status)) throw Error(ErrorKind::bad_input, file.string() + ": expected a regular file");
+    if (!std::filesystem::exists(status))
+        throw Error(ErrorKind::bad_input, file.string() + ": no such file");
+    if (!std::filesystem::is_regular_file(status))
+        throw Error(ErrorKind::bad_input, file.string() + ": expected a regular file");
     std::ifstream stream(file, std::ios::binary);
     std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (!stream.good() && !stream.eof()) throw Error(ErrorKind::bad_input, file.string() + ": cannot be read");
+    if (!stream.good() && !stream.eof())
+        throw Error(ErrorKind::bad_input, file.string() + ": cannot be read");
     return text;
 }
 

@@ -36,8 +36,8 @@ struct ScenePoint {
 struct ScenePath {
     std::string pointer;
     PathKind kind = PathKind::polyline;
-    std::vector<ScenePoint> points;   ///< control points (not for circles)
-    bool closed = false;              ///< true for circles
+    std::vector<ScenePoint> points;  ///< control points (not for circles)
+    bool closed = false;             ///< true for circles
     int degree = 3;
     bool parameter_curve = false;     ///< "parameter": "curve"; else by arc length
     bool snap_any = false;            ///< "snap": "any"
@@ -69,15 +69,15 @@ struct PoissonCurve {
     ScenePath path;
     Stops<Eigen::Vector4d> color_jump;  ///< left minus right, in the space of diffusion; alpha 0
     Stops<double> height_jump;
-    double width = 0;                   ///< of each side's strip, length units
+    double width = 0;  ///< of each side's strip, length units
 };
 
 struct PoissonRegion {
     ScenePath path;
-    bool by_rise = false;                                ///< values are `rise`; else `laplacian`
-    std::optional<Eigen::Vector4d> color;                ///< alpha 0
+    bool by_rise = false;                  ///< values are `rise`; else `laplacian`
+    std::optional<Eigen::Vector4d> color;  ///< alpha 0
     std::optional<double> height;
-    std::optional<double> ring = 0.2;                    ///< nullopt: "none"
+    std::optional<double> ring = 0.2;  ///< nullopt: "none"
 };
 
 struct Primitive {
@@ -98,26 +98,28 @@ struct Layer {
 };
 
 struct Scene {
-    std::filesystem::path file;       ///< as given by the user, for messages
-    std::filesystem::path mesh_file;  ///< resolved against the scene's folder
+    std::filesystem::path file;              ///< as given by the user, for messages
+    std::filesystem::path mesh_file;         ///< resolved against the scene's folder
     std::optional<std::string> mesh_select;  ///< a name, or a number as text
-    std::optional<double> max_edge;   ///< length units
+    std::optional<double> max_edge;          ///< length units
     std::optional<int> subdivide;
-    bool unit_is_bbox = true;         ///< length_unit "bbox"; else "mesh"
+    bool unit_is_bbox = true;  ///< length_unit "bbox"; else "mesh"
     ColorSpace color_space = ColorSpace::linear;
-    double knot_spacing = 0.03;       ///< length units
+    double knot_spacing = 0.03;  ///< length units
     double knot_grading = 0.25;
     BasisKind basis = BasisKind::local;
     int basis_rings = 2;
     std::vector<Layer> layers;
-    nlohmann::json document;          ///< the file as read (after --set), for embedding
+    nlohmann::json document;  ///< the file as read (after --set), for embedding
 };
 
 /// Reads and checks a scene. Throws Error(bad_input): "FILE: POINTER: expected ..., found ...".
-/// assignments: the values of --set, "ID.KEY[.KEY...]=VALUE", applied to the JSON before it is checked (unknown ID: Error(usage)).
+/// assignments: the values of --set, "ID.KEY[.KEY...]=VALUE", applied to the JSON before it is checked (unknown ID:
+/// Error(usage)).
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& assignments = {});
 /// The same from a document already in memory (an embedded scene); file is for messages and relative paths.
-Scene parse_scene(const nlohmann::json& document, const std::filesystem::path& file, const std::vector<std::string>& assignments = {});
+Scene parse_scene(const nlohmann::json& document, const std::filesystem::path& file,
+                  const std::vector<std::string>& assignments = {});
 
 /// Value at t: constant beyond the ends of an open curve; periodic on a closed one (t = 0 and 1 both given and
 /// different: a jump at the seam, t = 0 wins there).

@@ -26,14 +26,16 @@ std::optional<std::string> schema_violation(const nlohmann::json& document) {
     static const ParsedSchema parsed;
     valijson::Validator validator;
     valijson::ValidationResults results;
-    if (validator.validate(parsed.schema, valijson::adapters::NlohmannJsonAdapter(document), &results)) return std::nullopt;
+    if (validator.validate(parsed.schema, valijson::adapters::NlohmannJsonAdapter(document), &results))
+        return std::nullopt;
     valijson::ValidationResults::Error error;
     std::string message = "does not fit the schema";
     // The first error is the innermost one: ["<root>", "[layers]", "[0]", ...].
     if (results.popError(error)) {
         std::string pointer;
         for (const std::string& step : error.context) {
-            if (step.size() >= 2 && step.front() == '[') pointer += "/" + step.substr(1, step.size() - 2);
+            if (step.size() >= 2 && step.front() == '[')
+                pointer += "/" + step.substr(1, step.size() - 2);
         }
         message = pointer + ": " + error.description;
     }
