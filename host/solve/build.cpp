@@ -17,10 +17,12 @@ public:
         leave();
         stage_ = stage;
         started_ = std::chrono::steady_clock::now();
-        if (options_.on_stage) options_.on_stage(stage);
+        if (options_.on_stage)
+            options_.on_stage(stage);
     }
     void leave() {
-        if (stage_.empty()) return;
+        if (stage_.empty())
+            return;
         const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
         for (auto& [name, seconds] : result_.seconds)
             if (name == stage_) {
@@ -40,12 +42,16 @@ private:
 };
 
 RefinedSurface prepare_base(const Scene& scene, const Surface& welded, double unit) {
-    if (scene.max_edge) return subdivide_to(welded, *scene.max_edge * unit);
-    if (scene.subdivide) return subdivide(welded, *scene.subdivide);
+    if (scene.max_edge)
+        return subdivide_to(welded, *scene.max_edge * unit);
+    if (scene.subdivide)
+        return subdivide(welded, *scene.subdivide);
     return {welded, identity_map(welded)};
 }
 
-std::array<float, 3> to_float(const Point& p) { return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])}; }
+std::array<float, 3> to_float(const Point& p) {
+    return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
+}
 
 /// Displacement directions of the output vertices: the welded input's angle-weighted normals, interpolated, so that
 /// vertices made by subdivision and imprinting move like their surroundings.
@@ -70,10 +76,13 @@ void fill_heights(Build& b) {
     program.height_first.assign(1, 0);
     for (int v = 0; v < a.output.vertex_count(); ++v) {
         for (const LayerFields& layer : a.layers) {
-            if (layer.height_domain == none) continue;
+            if (layer.height_domain == none)
+                continue;
             const int vertex = a.domain_vertex[layer.height_domain][v];
-            if (vertex == none) continue;
-            program.height_terms.push_back({static_cast<std::uint32_t>(layer.height_domain), program.fields[layer.height_domain].table.vertex_row[vertex],
+            if (vertex == none)
+                continue;
+            program.height_terms.push_back({static_cast<std::uint32_t>(layer.height_domain),
+                                            program.fields[layer.height_domain].table.vertex_row[vertex],
                                             static_cast<std::uint32_t>(layer.height_channel)});
         }
         program.height_first.push_back(static_cast<std::uint32_t>(program.height_terms.size()));
@@ -83,7 +92,8 @@ void fill_heights(Build& b) {
 /// Shading normals for the groups of corners that a height can turn.
 void fill_normals(Build& b, const MeshInput& mesh) {
     const Arrangement& a = b.arrangement;
-    const std::vector<Point> input = corner_input_normals(a, b.map, b.welded.face_raw, mesh.faces, b.welded.raw_to_welded, mesh.normals);
+    const std::vector<Point> input =
+        corner_input_normals(a, b.map, b.welded.face_raw, mesh.faces, b.welded.raw_to_welded, mesh.normals);
     int groups = 0;
     const std::vector<int> group = shading_groups(a, input, &groups);
 
@@ -91,25 +101,30 @@ void fill_normals(Build& b, const MeshInput& mesh) {
     const auto moves = [&](int v) { return b.program.height_first[v + 1] > b.program.height_first[v]; };
     for (int h = 0; h < a.output.halfedge_count(); ++h) {
         const Face& face = a.output.face(h / 3);
-        if (moves(face[0]) || moves(face[1]) || moves(face[2])) needed[group[h]] = 1;
+        if (moves(face[0]) || moves(face[1]) || moves(face[2]))
+            needed[group[h]] = 1;
     }
     std::vector<int> number(groups, none);
     int count = 0;
     for (int g = 0; g < groups; ++g)
-        if (needed[g]) number[g] = count++;
+        if (needed[g])
+            number[g] = count++;
 
     std::vector<std::uint32_t> first(count + 1, 0);
     for (int h = 0; h < a.output.halfedge_count(); ++h)
-        if (number[group[h]] != none) ++first[number[group[h]] + 1];
+        if (number[group[h]] != none)
+            ++first[number[group[h]] + 1];
     for (int g = 0; g < count; ++g) first[g + 1] += first[g];
     std::vector<std::uint32_t> fill(first.begin(), first.end());
     b.program.corners.resize(first[count]);
     b.corner_normal.assign(a.output.face_count(), Face{none, none, none});
     for (int h = 0; h < a.output.halfedge_count(); ++h) {
         const int g = number[group[h]];
-        if (g == none) continue;
+        if (g == none)
+            continue;
         b.corner_normal[h / 3][h % 3] = g;
-        b.program.corners[fill[g]++] = {static_cast<std::uint32_t>(a.output.origin(h)), static_cast<std::uint32_t>(a.output.target(h)),
+        b.program.corners[fill[g]++] = {static_cast<std::uint32_t>(a.output.origin(h)),
+                                        static_cast<std::uint32_t>(a.output.target(h)),
                                         static_cast<std::uint32_t>(a.output.origin(Surface::prev(h)))};
     }
     b.program.corner_first = std::move(first);
@@ -135,7 +150,9 @@ Build build(const Scene& scene, const MeshInput& mesh, const BuildOptions& optio
 
     clock.enter("curves");
     b.welded = weld(mesh.points, mesh.faces, warnings);
-    if (b.welded.surface.face_count() == 0) throw Error(ErrorKind::bad_input, scene.mesh_file.string() + ": the mesh has no triangle with an area, nothing to draw on");
+    if (b.welded.surface.face_count() == 0)
+        throw Error(ErrorKind::bad_input,
+                    scene.mesh_file.string() + ": the mesh has no triangle with an area, nothing to draw on");
     b.unit = length_unit(scene, b.welded.surface);
     {
         BaseSurface base;
@@ -175,7 +192,8 @@ Build build(const Scene& scene, const MeshInput& mesh, const BuildOptions& optio
     fill_normals(b, mesh);
     clock.leave();
     const Result<bool> valid = validate(b.program);
-    if (!valid) throw Error(valid.error());
+    if (!valid)
+        throw Error(valid.error());
     return b;
 }
 

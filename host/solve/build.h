@@ -43,14 +43,14 @@ struct SolvedDomain {
 /// Everything from the welded input to the evaluators' program.
 struct Build {
     WeldedMesh welded;
-    SurfaceMap base_map;      ///< from the surface that curves are drawn on to the welded one
-    double unit = 1;          ///< mesh units of one length unit
+    SurfaceMap base_map;  ///< from the surface that curves are drawn on to the welded one
+    double unit = 1;      ///< mesh units of one length unit
     Arrangement arrangement;
-    SurfaceMap map;           ///< from the imprinted surface to the welded one
+    SurfaceMap map;  ///< from the imprinted surface to the welded one
     std::vector<SolvedDomain> domains;
 
-    Program program;                       ///< one field a domain; output vertices are arrangement.output's
-    std::vector<Face> corner_normal;       ///< per output face and corner: shading normal of the program, or none: nothing moves there
+    Program program;                  ///< one field a domain; output vertices are arrangement.output's
+    std::vector<Face> corner_normal;  ///< per output face and corner: shading normal of the program, or none: nothing moves there
     std::vector<std::pair<std::string, double>> seconds;  ///< per stage, in order
 };
 

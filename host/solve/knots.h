@@ -1,6 +1,7 @@
 // Knots: the Voronoi sites of a domain. Every vertex on a curve or on the domain's border is one; the rest is filled
 // by a greedy Poisson-disk sampling in geodesic distance with the sizing field
-//   h(x) = clamp(grading * distance to the nearest curve, input mesh's local edge length, spacing).
+//   h(x) = clamp(grading * distance to the nearest curve, input mesh's local edge length, spacing),
+// and near features (tips, crossings) and inside sources down to half that edge length.
 #pragma once
 
 #include <vector>
@@ -10,7 +11,7 @@
 namespace pvg {
 
 struct KnotOptions {
-    double spacing = 0;     ///< mesh units
+    double spacing = 0;  ///< mesh units
     double grading = 0.25;
     double feature_grading = 0.15;  ///< h <= feature_grading * distance to crossings, meetings and tips
 };

@@ -1,5 +1,5 @@
 // The sparse system for the control coefficients: K lambda = -integral of f over each cell, K = diag(sum w) - W
-// (METHOD 2: weights |e| / d >= 0). Dirichlet knots are eliminated, the two copies of a sharp Poisson curve are
+// (weights |e| / d >= 0). Dirichlet knots are eliminated, the two copies of a sharp Poisson curve are
 // one unknown with a known jump. Factored once; all channels are solved together.
 #pragma once
 

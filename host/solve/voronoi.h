@@ -1,5 +1,5 @@
 // The exact geodesic Voronoi diagram of the knots on a slit domain: cells, areas, bisectors and the dual's weights.
-// Bisectors are clipped in every face from the exact distance windows, not marched over vertex labels (METHOD 6).
+// Bisectors are clipped in every face from the exact distance windows, not marched over vertex labels.
 #pragma once
 
 #include <vector>
@@ -28,14 +28,14 @@ struct CellEdge {
 };
 
 struct Voronoi {
-    std::vector<int> cell;                  ///< V: the nearest knot (vertices without faces: none)
-    std::vector<double> distance;           ///< V: to it
-    std::vector<double> direction;          ///< V: log map at the knot, as in GeodesicField
-    std::vector<double> area;               ///< N: exact; sums to the domain's area
-    std::vector<CellPiece> pieces;          ///< sorted by face, then cell; areas sum to the face's
-    std::vector<CellEdge> edges;            ///< sorted by (a, b)
-    std::vector<int> neighbour_first;       ///< N + 1
-    std::vector<int> neighbours;            ///< adjacency of cells, ascending; from edges
+    std::vector<int> cell;             ///< V: the nearest knot (vertices without faces: none)
+    std::vector<double> distance;      ///< V: to it
+    std::vector<double> direction;     ///< V: log map at the knot, as in GeodesicField
+    std::vector<double> area;          ///< N: exact; sums to the domain's area
+    std::vector<CellPiece> pieces;     ///< sorted by face, then cell; areas sum to the face's
+    std::vector<CellEdge> edges;       ///< sorted by (a, b)
+    std::vector<int> neighbour_first;  ///< N + 1
+    std::vector<int> neighbours;       ///< adjacency of cells, ascending; from edges
 };
 
 Voronoi geodesic_voronoi(const Domain& domain, const Knots& knots);

@@ -31,22 +31,22 @@ struct HeightTerm {
 struct Program {
     std::vector<Field> fields;
 
-    std::vector<std::array<float, 3>> base;     ///< n
-    std::vector<std::array<float, 3>> normal;   ///< n, unit: displacement direction
-    float unit = 1;                             ///< mesh length of height 1
-    std::vector<std::uint32_t> height_first;    ///< n + 1: terms of vertex i are height_terms[first[i] .. first[i + 1])
+    std::vector<std::array<float, 3>> base;    ///< n
+    std::vector<std::array<float, 3>> normal;  ///< n, unit: displacement direction
+    float unit = 1;                            ///< mesh length of height 1
+    std::vector<std::uint32_t> height_first;   ///< n + 1: terms of vertex i are height_terms[first[i] .. first[i + 1])
     std::vector<HeightTerm> height_terms;
 
-    std::vector<std::uint32_t> corner_first;             ///< m + 1
-    std::vector<std::array<std::uint32_t, 3>> corners;   ///< (a, b, c): vertex and its next two in face order
+    std::vector<std::uint32_t> corner_first;            ///< m + 1
+    std::vector<std::array<std::uint32_t, 3>> corners;  ///< (a, b, c): vertex and its next two in face order
 };
 
 /// What an evaluator gives back, all on the host.
 struct Evaluation {
-    std::vector<std::vector<float>> values;       ///< per field: rows x channels, row-major, in row order of its table
-    std::vector<float> height;                    ///< n: sum of height terms (the scene's number)
-    std::vector<std::array<float, 3>> position;   ///< n
-    std::vector<std::array<float, 3>> normal;     ///< m, unit (0 where a vertex has no area around it)
+    std::vector<std::vector<float>> values;      ///< per field: rows x channels, row-major, in row order of its table
+    std::vector<float> height;                   ///< n: sum of height terms (the scene's number)
+    std::vector<std::array<float, 3>> position;  ///< n
+    std::vector<std::array<float, 3>> normal;    ///< m, unit (0 where a vertex has no area around it)
 };
 
 /// Checks every index, size and number of a program (tables included). Returns an error naming the first broken rule.

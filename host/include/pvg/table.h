@@ -21,14 +21,15 @@ struct Table {
     std::uint32_t coefficient_count = 0;  ///< knots + source columns
     std::uint32_t channels = 0;           ///< 1 (height), 4 (RGBA) or 5 (RGBA, height)
 
-    std::vector<std::uint32_t> cell_first_row;     ///< N + 1, ascending, first 0, last R
-    std::vector<std::uint32_t> cell_first_index;   ///< N + 1: list of cell c is indices[first[c] .. first[c + 1]), a multiple of 4 long
+    std::vector<std::uint32_t> cell_first_row;  ///< N + 1, ascending, first 0, last R
+    std::vector<std::uint32_t>
+        cell_first_index;  ///< N + 1: list of cell c is indices[first[c] .. first[c + 1]), a multiple of 4 long
     std::vector<std::uint32_t> cell_first_weight;  ///< N + 1: block of cell c; rows x stride floats; multiples of 4
     std::vector<std::uint32_t> indices;            ///< < coefficient_count
     std::vector<float> weights;                    ///< finite
 
-    std::vector<std::uint32_t> row_vertex;   ///< R: vertex of the domain of each row (a permutation)
-    std::vector<std::uint32_t> vertex_row;   ///< the inverse
+    std::vector<std::uint32_t> row_vertex;  ///< R: vertex of the domain of each row (a permutation)
+    std::vector<std::uint32_t> vertex_row;  ///< the inverse
 
     std::uint64_t bytes() const;
 };

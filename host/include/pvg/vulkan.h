@@ -17,7 +17,7 @@ struct VulkanDeviceInfo {
     std::string driver;  ///< driver name and version
     std::uint32_t api_major = 0, api_minor = 0, api_patch = 0;
     bool usable = false;
-    std::string reason;  ///< why not, when not usable
+    std::string reason;      ///< why not, when not usable
     bool preferred = false;  ///< what `auto` takes
 };
 

@@ -1,0 +1,124 @@
+#include "solve/log_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace pvg {
+
+using Complex = std::complex<double>;
+
+LogMap::LogMap(const Surface& surface, const std::vector<int>& partner)
+    : surface_(surface), partner_(partner), turn_(surface.halfedge_count()) {
+    for (int h = 0; h < surface.halfedge_count(); ++h) {
+        const Point& at = surface.point(surface.origin(h));
+        const Point along = surface.point(surface.target(h)) - at, back = surface.point(surface.origin(Surface::prev(h))) - at;
+        const double size = along.squaredNorm();
+        if (size > 0 && back.squaredNorm() > 0)
+            turn_[h] = {along.dot(back) / size, along.cross(back).norm() / size};
+    }
+}
+
+void LogMap::unfold(const std::vector<int>& vertices, const std::vector<int>& local, Buffers& buffers,
+                    std::vector<Complex>& place) const {
+    const std::size_t count = vertices.size();
+    // A vertex takes the mean of the places that the faces laid before it give: where the surface is curved they differ, and a
+    // single one would leave cracks between branches of the unfolding. Nearest first; equal distances by number, the same order
+    // everywhere.
+    auto& [sum, votes, laid, queue] = buffers;
+    sum.assign(count, 0);
+    votes.assign(count, 0);
+    laid.assign(count, 0);
+    queue.clear();
+    place.assign(count, 0);
+    const auto vote = [&](int v, Complex at) {
+        if (v == none || laid[v])
+            return;
+        sum[v] += at;
+        if (++votes[v] > 1)
+            return;
+        queue.emplace_back(std::norm(at), v);
+        std::push_heap(queue.begin(), queue.end(), std::greater<>());
+    };
+    const auto lay_fan = [&](int vertex) {
+        const int start = surface_.outgoing(vertex);
+        double total = 0;
+        int h = start;
+        while (h != none) {
+            total += std::arg(turn_[h]);
+            h = surface_.twin(Surface::prev(h));
+            if (h == start)
+                break;
+        }
+        const double scale = h == none || total <= 0 ? 1 : 2 * std::numbers::pi / total;
+        double angle = 0;
+        h = start;
+        while (h != none) {
+            vote(local[surface_.target(h)], std::polar(surface_.length(h), angle));
+            angle += scale * std::arg(turn_[h]);
+            const int last = Surface::prev(h);
+            h = surface_.twin(last);
+            if (h == none)
+                vote(local[surface_.origin(last)], std::polar(surface_.length(last), angle));
+            if (h == start)
+                break;
+        }
+    };
+    // Faces of the vertex with one corner left to lay.
+    const auto unfold_around = [&](int vertex) {
+        const int start = surface_.outgoing(vertex), i = local[vertex];
+        int h = start;
+        while (h != none) {
+            const int last = Surface::prev(h);
+            const int j = local[surface_.target(h)], m = local[surface_.origin(last)];
+            if (j != none && m != none && laid[j] != laid[m] && turn_[h] != 0.0) {
+                if (laid[j])
+                    vote(m, place[i] + turn_[h] * (place[j] - place[i]));
+                else
+                    vote(j, place[i] + (place[m] - place[i]) / turn_[h]);
+            }
+            h = surface_.twin(last);
+            if (h == start)
+                break;
+        }
+    };
+    const auto settle = [&](int v, Complex at) {
+        laid[v] = 1;
+        place[v] = at;
+        unfold_around(vertices[v]);
+        const int other = partner_[vertices[v]];
+        if (other == none || local[other] == none || laid[local[other]])
+            return;
+        laid[local[other]] = 1;
+        place[local[other]] = at;
+        unfold_around(other);
+    };
+
+    lay_fan(vertices[0]);
+    settle(0, 0);
+    while (!queue.empty()) {
+        std::pop_heap(queue.begin(), queue.end(), std::greater<>());
+        const int v = queue.back().second;
+        queue.pop_back();
+        if (!laid[v])
+            settle(v, sum[v] / static_cast<double>(votes[v]));
+    }
+
+    for (std::size_t v = 0; v < count; ++v) {
+        if (laid[v])
+            continue;
+        const int start = surface_.outgoing(vertices[v]);
+        int h = start;
+        while (h != none) {
+            for (int w : {local[surface_.target(h)], local[surface_.origin(Surface::prev(h))]})
+                if (w != none && laid[w])
+                    place[v] = place[w];
+            h = surface_.twin(Surface::prev(h));
+            if (h == start)
+                break;
+        }
+    }
+}
+
+}  // namespace pvg

@@ -1,0 +1,40 @@
+// A log map good enough to span low harmonic polynomials: the surface around a vertex laid into the plane face by face, nearest
+// vertices first. Exact in the plane; elsewhere each face keeps its shape and takes size and direction from the edge it is laid
+// to. After R. Schmidt, C. Grimm, B. Wyvill, "Interactive decal compositing with discrete exponential maps", ACM TOG 25(3), 2006.
+#pragma once
+
+#include <complex>
+#include <utility>
+#include <vector>
+
+#include "mesh/surface.h"
+
+namespace pvg {
+
+/// The faces' shapes, made once; const calls may run in parallel.
+class LogMap {
+public:
+    /// partner: per vertex the other copy on a sharp Poisson curve, or none; the two copies fall together.
+    LogMap(const Surface& surface, const std::vector<int>& partner);
+
+    /// Working memory of one thread.
+    struct Buffers {
+        std::vector<std::complex<double>> sum;
+        std::vector<int> votes;
+        std::vector<char> laid;
+        std::vector<std::pair<double, int>> queue;
+    };
+
+    /// Lays out the vertices of a patch around the first of them. local: vertex of the surface -> number in the patch, or none.
+    /// Vertices that no face connects to the rest take a neighbour's place. place: one point per number in the patch.
+    void unfold(const std::vector<int>& vertices, const std::vector<int>& local, Buffers& buffers,
+                std::vector<std::complex<double>>& place) const;
+
+private:
+    const Surface& surface_;
+    const std::vector<int>& partner_;
+    std::vector<std::complex<double>>
+        turn_;  ///< per halfedge: prev's reversed edge = turn x this edge, in the face's plane; 0 without length
+};
+
+}  // namespace pvg

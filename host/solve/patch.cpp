@@ -1,0 +1,503 @@
+#include "solve/patch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <tuple>
+
+namespace pvg {
+namespace {
+
+constexpr int waiting = -2;  // in the patch's cells, not yet reached by an edge
+
+}  // namespace
+
+PatchSolver::PatchSolver(const PatchSpace& space, const PatchOptions& options)
+    : space_(space),
+      options_(options),
+      modes_(2 * options.degree + 1),
+      local_(space.domain.surface.vertex_count(), none),
+      ring_of_cell_(space.knots.vertex.size(), none) {}
+
+void PatchSolver::solve(int cell, Patch& patch) {
+    gather(cell);
+    join_edges();
+    space_.log_map.unfold(vertices_, local_, log_map_, place_);
+    choose_list(patch);
+    attach_dirichlet();
+    number_unknowns();
+    open_columns(patch);
+    add_offsets();
+    add_equations(patch);
+    add_fluxes(patch);
+    factor_.factor();
+    factor_.solve(X_);
+    read_rows(cell, patch);
+}
+
+/// The cells around and their vertices, as far as edges connect them to the knot.
+void PatchSolver::gather(int cell) {
+    for (int v : vertices_) local_[v] = none;
+    for (int c : cells_) ring_of_cell_[c] = none;
+    vertices_.clear();
+    cells_.assign(1, cell);
+    ring_of_cell_[cell] = 0;
+    for (std::size_t at = 0; at < cells_.size(); ++at) {
+        const int c = cells_[at];
+        if (ring_of_cell_[c] == options_.rings + options_.outer_rings)
+            break;
+        for (int e = space_.neighbour_first[c]; e < space_.neighbour_first[c + 1]; ++e) {
+            const int other = space_.neighbours[e];
+            if (ring_of_cell_[other] != none)
+                continue;
+            ring_of_cell_[other] = ring_of_cell_[c] + 1;
+            cells_.push_back(other);
+        }
+    }
+
+    queue_.clear();
+    for (int c : cells_)
+        for (int i = space_.cell_first[c]; i < space_.cell_first[c + 1]; ++i) {
+            queue_.push_back(space_.cell_vertices[i]);
+            local_[queue_.back()] = waiting;
+        }
+    const auto reach = [&](int v) {
+        if (local_[v] != waiting)
+            return;
+        local_[v] = static_cast<int>(vertices_.size());
+        vertices_.push_back(v);
+    };
+    local_[space_.knots.vertex[cell]] = waiting;
+    reach(space_.knots.vertex[cell]);
+    for (std::size_t at = 0; at < vertices_.size(); ++at) {
+        const int v = vertices_[at];
+        for (Eigen::SparseMatrix<double>::InnerIterator entry(space_.S, v); entry; ++entry) reach(static_cast<int>(entry.row()));
+        if (space_.partner[v] != none)
+            reach(space_.partner[v]);
+    }
+    for (int v : queue_)
+        if (local_[v] == waiting)
+            local_[v] = none;
+}
+
+void PatchSolver::join_edges() {
+    edge_first_.assign(1, 0);
+    edge_to_.clear();
+    edge_weight_.clear();
+    outer_.assign(vertices_.size(), 0);
+    for (std::size_t v = 0; v < vertices_.size(); ++v) {
+        for (Eigen::SparseMatrix<double>::InnerIterator entry(space_.S, vertices_[v]); entry; ++entry) {
+            const int w = local_[entry.row()];
+            if (w == none) {
+                outer_[v] = 1;
+            } else if (w != static_cast<int>(v)) {
+                edge_to_.push_back(w);
+                edge_weight_.push_back(-entry.value());
+            }
+        }
+        edge_first_.push_back(static_cast<int>(edge_to_.size()));
+    }
+}
+
+/// Brings those to the front that, one after another, are farthest from all chosen before, as seen from the cell's knot.
+/// Distances go from cell to cell, so that the two sides of a slit are apart; the two copies on a Poisson curve go together.
+void PatchSolver::spread(std::vector<Candidate>& candidates, int wanted) const {
+    const int count = static_cast<int>(candidates.size());
+    const auto vertex = [&](int i) { return space_.knots.vertex[candidates[i].knot]; };
+    std::vector<std::pair<int, int>> by_knot(count);
+    for (int i = 0; i < count; ++i) by_knot[i] = {candidates[i].knot, i};
+    std::sort(by_knot.begin(), by_knot.end());
+    const auto find = [&](int knot) {
+        const auto it = std::lower_bound(by_knot.begin(), by_knot.end(), std::pair(knot, 0));
+        return it != by_knot.end() && it->first == knot ? it->second : none;
+    };
+    std::vector<double> gap(count, std::numeric_limits<double>::infinity()), distance(count);
+    std::vector<char> chosen(count, 0);
+    std::vector<Candidate> order;
+    using Entry = std::pair<double, int>;
+    std::vector<Entry> heap;
+    const auto choose = [&](int i) {
+        chosen[i] = 1;
+        order.push_back(candidates[i]);
+        std::fill(distance.begin(), distance.end(), std::numeric_limits<double>::infinity());
+        distance[i] = 0;
+        heap.assign(1, {0.0, i});
+        while (!heap.empty()) {
+            std::pop_heap(heap.begin(), heap.end(), std::greater<>());
+            const auto [d, at] = heap.back();
+            heap.pop_back();
+            if (d > distance[at])
+                continue;
+            const int knot = candidates[at].knot;
+            for (int e = space_.neighbour_first[knot]; e < space_.neighbour_first[knot + 1]; ++e) {
+                const int other = find(space_.neighbours[e]);
+                if (other == none)
+                    continue;
+                const double to = d + std::abs(place_[local_[vertex(other)]] - place_[local_[vertex(at)]]);
+                if (to >= std::min(distance[other], gap[other]))
+                    continue;
+                distance[other] = to;
+                heap.emplace_back(to, other);
+                std::push_heap(heap.begin(), heap.end(), std::greater<>());
+            }
+        }
+        for (int k = 0; k < count; ++k) gap[k] = std::min(gap[k], distance[k]);
+    };
+    const auto choose_both = [&](int i) {
+        choose(i);
+        const int other = space_.partner[vertex(i)] == none ? none : find(space_.knots.knot_of_vertex[space_.partner[vertex(i)]]);
+        if (other != none && !chosen[other])
+            choose(other);
+    };
+    choose_both(0);
+    while (static_cast<int>(order.size()) < wanted) {
+        int best = none;
+        double most = -1;
+        for (int i = 0; i < count; ++i) {
+            const double seen = candidates[i].distance > 0 ? gap[i] / candidates[i].distance : 0;
+            if (chosen[i] || seen <= most)
+                continue;
+            best = i;
+            most = seen;
+        }
+        if (best == none)
+            break;
+        choose_both(best);
+    }
+    for (int i = 0; i < count; ++i)
+        if (!chosen[i])
+            order.push_back(candidates[i]);
+    candidates = std::move(order);
+}
+
+/// Knots of the inner rings, nearest first, then the sources of the patch; cut to the longest list allowed.
+void PatchSolver::choose_list(Patch& patch) {
+    std::vector<Candidate> candidates;
+    for (int c : cells_) {
+        const int v = local_[space_.knots.vertex[c]];
+        if (v != none && ring_of_cell_[c] <= options_.rings)
+            candidates.push_back({ring_of_cell_[c], std::abs(place_[v]), c});
+    }
+    std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+        if (a.ring != b.ring)
+            return a.ring < b.ring;
+        return a.distance != b.distance ? a.distance < b.distance : a.knot < b.knot;
+    });
+    std::vector<int> sources;
+    for (int v : vertices_)
+        for (int i = space_.load_first[v]; i < space_.load_first[v + 1]; ++i) sources.push_back(space_.loads[i].first);
+    std::sort(sources.begin(), sources.end());
+    sources.erase(std::unique(sources.begin(), sources.end()), sources.end());
+
+    // Padding costs as much as a knot: give up to three knots away for it. Eight must stay, whatever the sources take.
+    const int inner = static_cast<int>(candidates.size()), others = static_cast<int>(sources.size());
+    const int all = inner + others;
+    const int wanted = all > options_.list ? options_.list : all >= options_.round_down ? all / 4 * 4 : all;
+    const int room = std::min(std::max(wanted - others, 8), inner);
+    if (inner > room + 3)
+        spread(candidates, room);
+    patch.list.clear();
+    patch.rows.clear();
+    patch.distance.clear();
+    patch.radius = 0;
+    entry_.assign(vertices_.size(), none);
+    for (int i = 0; i < room; ++i) {
+        const Candidate& candidate = candidates[i];
+        entry_[local_[space_.knots.vertex[candidate.knot]]] = i;
+        patch.list.push_back(candidate.knot);
+        patch.rows.push_back(space_.knots.vertex[candidate.knot]);
+        patch.distance.push_back(candidate.distance);
+        patch.radius = std::max(patch.radius, candidate.distance);
+    }
+    scale_ = patch.radius > 0 ? patch.radius : 1;
+    patch.list_knots = room;
+    for (int s : sources) patch.list.push_back(static_cast<int>(space_.knots.vertex.size()) + s);
+}
+
+/// A Dirichlet vertex that is not listed takes the mean of the two nearest along the curve that are, by inverse distance: linear
+/// between them. One that no curve joins to a listed one follows the nearest through the patch.
+void PatchSolver::attach_dirichlet() {
+    const int count = static_cast<int>(vertices_.size());
+    anchors_.assign(count, {});
+    has_dirichlet_ = false;
+    using Entry = std::tuple<double, int, int>;  // distance, vertex, listed vertex
+    std::vector<Entry> heap;
+    const auto push = [&](double distance, int v, int a) {
+        heap.emplace_back(distance, v, a);
+        std::push_heap(heap.begin(), heap.end(), std::greater<>());
+    };
+    for (int v = 0; v < count; ++v) {
+        if (!fixed(v))
+            continue;
+        has_dirichlet_ = true;
+        if (entry_[v] != none)
+            push(0, v, v);
+    }
+    anchored_ = !heap.empty();
+    while (!heap.empty()) {
+        std::pop_heap(heap.begin(), heap.end(), std::greater<>());
+        const auto [distance, v, a] = heap.back();
+        heap.pop_back();
+        Anchors& at = anchors_[v];
+        if (at.vertex[0] == a || at.vertex[1] != none || at.vertex[0] == v)
+            continue;
+        const int slot = at.vertex[0] == none ? 0 : 1;
+        at.vertex[slot] = a;
+        at.distance[slot] = distance;
+        for (int e = edge_first_[v]; e < edge_first_[v + 1]; ++e)
+            if (fixed(edge_to_[e]))
+                push(distance + std::abs(place_[edge_to_[e]] - place_[v]), edge_to_[e], a);
+    }
+    if (!anchored_)
+        return;
+    queue_.clear();
+    for (int v = 0; v < count; ++v)
+        if (anchors_[v].vertex[0] != none)
+            queue_.push_back(v);
+    for (std::size_t i = 0; i < queue_.size(); ++i)
+        for (int e = edge_first_[queue_[i]]; e < edge_first_[queue_[i] + 1]; ++e) {
+            const int w = edge_to_[e];
+            if (anchors_[w].vertex[0] != none)
+                continue;
+            anchors_[w].vertex[0] = anchors_[queue_[i]].vertex[0];
+            queue_.push_back(w);
+        }
+}
+
+/// One unknown a free vertex, the two copies on a sharp Poisson curve share one. Numbered by breadth from the far side of the
+/// patch, backwards (reverse Cuthill-McKee without its sorting by degree, which meshes do not need).
+void PatchSolver::number_unknowns() {
+    const int count = static_cast<int>(vertices_.size());
+    unknown_.assign(count, none);
+    unknowns_ = 0;
+    queue_.clear();
+    const auto take = [&](int v) {
+        if (unknown_[v] != none || fixed(v))
+            return;
+        unknown_[v] = unknowns_;
+        queue_.push_back(v);
+        if (const int other = partner(v); other != none) {
+            unknown_[other] = unknowns_;
+            queue_.push_back(other);
+        }
+        ++unknowns_;
+    };
+    std::size_t at = 0;
+    for (int root = count - 1; root >= 0; --root)
+        for (take(root); at < queue_.size(); ++at)
+            for (int e = edge_first_[queue_[at]]; e < edge_first_[queue_[at] + 1]; ++e) take(edge_to_[e]);
+    for (int& u : unknown_)
+        if (u != none)
+            u = unknowns_ - 1 - u;
+    // Without a Dirichlet value the cell's knot is held; the constant is a mode of its own then.
+    held_ = has_dirichlet_ || unknowns_ == 0 ? none : unknown_[0];
+
+    first_column_.resize(unknowns_);
+    for (int u = 0; u < unknowns_; ++u) first_column_[u] = u;
+    for (int v = 0; v < count; ++v) {
+        const int u = unknown_[v];
+        if (u == none || u == held_)
+            continue;
+        for (int e = edge_first_[v]; e < edge_first_[v + 1]; ++e) {
+            const int other = unknown_[edge_to_[e]];
+            if (other != none && other != held_)
+                first_column_[u] = std::min(first_column_[u], other);
+        }
+    }
+    factor_.begin(first_column_);
+}
+
+/// Only list entries that stand for something known get a right-hand side: Dirichlet values, both sides of a jump, sources.
+void PatchSolver::open_columns(const Patch& patch) {
+    column_of_.assign(patch.list.size(), none);
+    columns_ = 0;
+    const auto open = [&](int entry) {
+        if (column_of_[entry] == none)
+            column_of_[entry] = columns_++;
+    };
+    for (int i = 0; i < patch.list_knots; ++i) {
+        const int v = local_[patch.rows[i]], other = partner(v);
+        if (fixed(v) || (other != none && entry_[other] != none))
+            open(i);
+    }
+    for (std::size_t s = patch.list_knots; s < patch.list.size(); ++s) open(static_cast<int>(s));
+    width_ = (columns_ + modes_ + 3) / 4 * 4;
+    X_.setZero(unknowns_, width_);
+}
+
+void PatchSolver::polynomials(int v, double* values) const {
+    const Complex z = place_[v] / scale_;
+    Complex power = 1;
+    values[0] = 1;
+    for (int l = 1; l <= options_.degree; ++l) {
+        power *= z;
+        values[2 * l - 1] = power.real();
+        values[2 * l] = power.imag();
+    }
+}
+
+double* PatchSolver::new_offset(int v) {
+    offset_of_[v] = offsets_++;
+    offset_.resize(static_cast<std::size_t>(offsets_) * width_, 0.0);
+    return offset_.data() + static_cast<std::size_t>(offset_of_[v]) * width_;
+}
+
+/// What Dirichlet vertices and right copies are, apart from their unknown.
+void PatchSolver::add_offsets() {
+    const int count = static_cast<int>(vertices_.size());
+    offset_of_.assign(count, none);
+    offset_.clear();
+    offsets_ = 0;
+    std::vector<double> values(modes_);
+    for (int v = 0; v < count; ++v) {
+        if (!fixed(v))
+            continue;
+        double* const row = new_offset(v);
+        const Anchors& at = anchors_[v];
+        if (at.vertex[0] == v) {
+            row[column_of_[entry_[v]]] = 1;
+            continue;
+        }
+        // Beside the list the value follows the fitted polynomial from the listed vertices on: linear fields stay exact.
+        polynomials(v, row + columns_);
+        for (int k = 0; k < 2 && at.vertex[k] != none; ++k) {
+            const double apart = at.distance[0] + at.distance[1];
+            const double share = at.vertex[1] == none ? 1 : apart > 0 ? at.distance[1 - k] / apart : 0.5;
+            row[column_of_[entry_[at.vertex[k]]]] += share;
+            polynomials(at.vertex[k], values.data());
+            for (int m = 0; m < modes_; ++m) row[columns_ + m] -= share * values[m];
+        }
+    }
+    // A pair of copies whose own knots are not both listed takes the jump of the nearest pair that is.
+    queue_.clear();
+    for (int v = 0; v < count; ++v)
+        if (is_right(v) && entry_[v] != none && entry_[partner(v)] != none)
+            queue_.push_back(v);
+    for (int v = 0; v < count && !queue_.empty(); ++v) {
+        if (!is_right(v))
+            continue;
+        const auto nearest = std::min_element(queue_.begin(), queue_.end(), [&](int a, int b) {
+            return std::norm(place_[a] - place_[v]) < std::norm(place_[b] - place_[v]);
+        });
+        double* const row = new_offset(v);
+        row[column_of_[entry_[*nearest]]] = 1;
+        row[column_of_[entry_[partner(*nearest)]]] = -1;
+    }
+}
+
+/// The patch's own stiffness (edges that leave it are dropped) and the loads.
+void PatchSolver::add_equations(const Patch& patch) {
+    const int knots = static_cast<int>(space_.knots.vertex.size());
+    for (int v = 0; v < static_cast<int>(vertices_.size()); ++v) {
+        const int u = unknown_[v];
+        if (u == none)
+            continue;
+        double* const right = X_.row(u).data();
+        const auto add_offset = [&](int of, double weight) {
+            const double* const row = offset_.data() + static_cast<std::size_t>(offset_of_[of]) * width_;
+            for (int k = 0; k < width_; ++k) right[k] += weight * row[k];
+        };
+        for (int e = edge_first_[v]; e < edge_first_[v + 1]; ++e) {
+            const int w = edge_to_[e], other = unknown_[w];
+            const double weight = edge_weight_[e];
+            if (u != held_) {
+                if (other != u)
+                    factor_.add(u, u, weight);
+                if (other != none && other != held_ && other < u)
+                    factor_.add(u, other, -weight);
+            }
+            if (offset_of_[v] != none)
+                add_offset(v, -weight);
+            if (offset_of_[w] != none)
+                add_offset(w, weight);
+        }
+        for (int i = space_.load_first[vertices_[v]]; i < space_.load_first[vertices_[v] + 1]; ++i) {
+            const auto source =
+                std::lower_bound(patch.list.begin() + patch.list_knots, patch.list.end(), knots + space_.loads[i].first);
+            right[column_of_[source - patch.list.begin()]] -= space_.loads[i].second;
+        }
+    }
+}
+
+/// The flux that each polynomial sends through the outer border.
+void PatchSolver::add_fluxes(const Patch&) {
+    const int count = static_cast<int>(vertices_.size());
+    std::vector<double> own(modes_), other(modes_);
+    std::vector<double> outflow(count, 0.0);  // of the function |z|: where a flux that must leave does so
+    double total = 0;
+    for (int v = 0; v < count; ++v) {
+        if (!outer_[v] || unknown_[v] == none)
+            continue;
+        double* const right = X_.row(unknown_[v]).data() + columns_;
+        polynomials(v, own.data());
+        for (int e = edge_first_[v]; e < edge_first_[v + 1]; ++e) {
+            polynomials(edge_to_[e], other.data());
+            for (int m = 1; m < modes_; ++m) right[m] += edge_weight_[e] * (own[m] - other[m]);
+            outflow[v] += edge_weight_[e] * (std::abs(place_[v]) - std::abs(place_[edge_to_[e]]));
+        }
+        outflow[v] = std::max(outflow[v], 0.0);
+        total += outflow[v];
+    }
+    if (total > 0 && has_dirichlet_ && anchored_) {
+        // Mode 0: a flux that enters everywhere and ends on the diffusion curves. (Where none is listed, mode 0 is the constant
+        // already.)
+        for (int v = 0; v < count; ++v)
+            if (outflow[v] > 0)
+                X_(unknown_[v], columns_) += outflow[v] / total;
+    } else if (total > 0 && !has_dirichlet_) {
+        // A flux without a Dirichlet value to end on must sum to zero.
+        const Eigen::RowVectorXd sum = X_.colwise().sum();
+        for (int v = 0; v < count; ++v)
+            if (outflow[v] > 0)
+                X_.row(unknown_[v]) -= outflow[v] / total * sum;
+    }
+    if (held_ == none)
+        return;
+    factor_.add(held_, held_, 1);
+    X_.row(held_).setZero();
+}
+
+void PatchSolver::read_rows(int cell, Patch& patch) const {
+    const int listed = static_cast<int>(patch.list.size());
+    for (int i = space_.cell_first[cell]; i < space_.cell_first[cell + 1]; ++i) {
+        const int vertex = space_.cell_vertices[i];
+        patch.rows.push_back(local_[vertex] == none ? none : vertex);
+    }
+    patch.free_constant = !anchored_;
+    patch.known.setZero(static_cast<Eigen::Index>(patch.rows.size()), listed);
+    patch.modes.setZero(static_cast<Eigen::Index>(patch.rows.size()), modes_);
+    Eigen::RowVectorXd row(width_);
+    for (std::size_t r = 0; r < patch.rows.size(); ++r) {
+        if (patch.rows[r] == none)
+            continue;
+        const int v = local_[patch.rows[r]];
+        row.setZero();
+        if (unknown_[v] != none)
+            row = X_.row(unknown_[v]);
+        if (offset_of_[v] != none)
+            row +=
+                Eigen::Map<const Eigen::RowVectorXd>(offset_.data() + static_cast<std::size_t>(offset_of_[v]) * width_, width_);
+        for (int e = 0; e < listed; ++e)
+            if (column_of_[e] != none)
+                patch.known(r, e) = row[column_of_[e]];
+        patch.modes.row(r) = row.segment(columns_, modes_);
+        if (!has_dirichlet_)
+            patch.modes(r, 0) = 1;
+    }
+    patch.data.clear();
+    patch.fixed.clear();
+    for (int e = 0; e < patch.list_knots; ++e) {
+        const int v = local_[patch.rows[e]];
+        if (fixed(v))
+            patch.fixed.push_back(e);
+        else if (!(is_right(v) &&
+                   entry_[partner(v)] != none))  // the two copies on a Poisson curve say the same; one of them is enough
+            patch.data.push_back(e);
+    }
+    patch.polynomials.resize(static_cast<Eigen::Index>(patch.fixed.size()), modes_);
+    for (std::size_t f = 0; f < patch.fixed.size(); ++f)
+        polynomials(local_[patch.rows[patch.fixed[f]]], patch.polynomials.row(f).data());
+}
+
+}  // namespace pvg

@@ -1,0 +1,128 @@
+#include "solve/patch_space.h"
+
+#include <algorithm>
+
+#include "mesh/intrinsic.h"
+
+namespace pvg {
+namespace {
+
+Eigen::SparseMatrix<double> delaunay_stiffness(const Surface& surface) {
+    IntrinsicTriangulation triangulation = intrinsic_triangulation(surface);
+    make_delaunay(triangulation);
+    return cotan_stiffness(triangulation, surface.vertex_count());
+}
+
+std::vector<int> coupled_partners(const Domain& domain) {
+    std::vector<int> partner(domain.surface.vertex_count(), none);
+    for (const Coupling& coupling : domain.couplings) {
+        partner[coupling.left] = coupling.right;
+        partner[coupling.right] = coupling.left;
+    }
+    return partner;
+}
+
+}  // namespace
+
+PatchSpace::PatchSpace(const Domain& domain_, const Knots& knots_, const Voronoi& voronoi)
+    : domain(domain_),
+      knots(knots_),
+      S(delaunay_stiffness(domain.surface)),
+      partner(coupled_partners(domain)),
+      is_right(domain.surface.vertex_count(), 0),
+      log_map(domain.surface, partner) {
+    for (const Coupling& coupling : domain.couplings) is_right[coupling.right] = 1;
+    join_cells(voronoi);
+    sort_vertices(voronoi);
+    integrate_sources();
+}
+
+void PatchSpace::join_cells(const Voronoi& voronoi) {
+    const int cells = static_cast<int>(knots.vertex.size());
+    std::vector<std::pair<int, int>> touching;
+    for (const Coupling& coupling : domain.couplings) {
+        const int a = knots.knot_of_vertex[coupling.left], b = knots.knot_of_vertex[coupling.right];
+        if (a == none || b == none)
+            continue;
+        touching.emplace_back(a, b);
+        touching.emplace_back(b, a);
+    }
+    for (int c = 0; c < cells; ++c)
+        for (int e = voronoi.neighbour_first[c]; e < voronoi.neighbour_first[c + 1]; ++e)
+            touching.emplace_back(c, voronoi.neighbours[e]);
+    // Curves can be much finer than the mesh around: their cells are strips, and a coarse vertex in one of them has its
+    // neighbours in strips far along. Cells that an edge joins without even a common neighbour are such.
+    const auto near = [&](int a, int b) {
+        const auto begin = [&](int c) { return voronoi.neighbours.begin() + voronoi.neighbour_first[c]; };
+        const auto end = [&](int c) { return voronoi.neighbours.begin() + voronoi.neighbour_first[c + 1]; };
+        if (std::binary_search(begin(a), end(a), b))
+            return true;
+        for (auto i = begin(a), j = begin(b); i != end(a) && j != end(b);) {
+            if (*i == *j)
+                return true;
+            if (*i < *j)
+                ++i;
+            else
+                ++j;
+        }
+        return false;
+    };
+    for (int v = 0; v < S.outerSize(); ++v)
+        for (Eigen::SparseMatrix<double>::InnerIterator entry(S, v); entry; ++entry) {
+            const int a = voronoi.cell[v], b = voronoi.cell[entry.row()];
+            if (a != b && a != none && b != none && !near(a, b))
+                touching.emplace_back(a, b);
+        }
+    std::sort(touching.begin(), touching.end());
+    touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
+    neighbour_first.assign(cells + 1, 0);
+    for (const auto& [a, b] : touching) {
+        ++neighbour_first[a + 1];
+        neighbours.push_back(b);
+    }
+    for (int c = 0; c < cells; ++c) neighbour_first[c + 1] += neighbour_first[c];
+}
+
+void PatchSpace::sort_vertices(const Voronoi& voronoi) {
+    const int cells = static_cast<int>(knots.vertex.size()), vertices = domain.surface.vertex_count();
+    cell_first.assign(cells + 1, 0);
+    for (int v = 0; v < vertices; ++v)
+        if (voronoi.cell[v] != none)
+            ++cell_first[voronoi.cell[v] + 1];
+    for (int c = 0; c < cells; ++c) cell_first[c + 1] += cell_first[c];
+    cell_vertices.resize(cell_first[cells]);
+    std::vector<int> fill(cell_first.begin(), cell_first.end() - 1);
+    for (int v = 0; v < vertices; ++v)
+        if (voronoi.cell[v] != none)
+            cell_vertices[fill[voronoi.cell[v]]++] = v;
+}
+
+void PatchSpace::integrate_sources() {
+    struct Part {
+        int vertex, source;
+        double load;
+    };
+    std::vector<Part> parts;
+    for (std::size_t s = 0; s < domain.sources.size(); ++s)
+        for (const auto& [face, laplacian] : domain.sources[s].profile) {
+            // Exact for a profile that is constant on the face.
+            const double third = laplacian * domain.surface.face_area(face) / 3;
+            for (int v : domain.surface.face(face)) parts.push_back({v, static_cast<int>(s), third});
+        }
+    std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
+        return a.vertex != b.vertex ? a.vertex < b.vertex : a.source < b.source;
+    });
+    load_first.assign(domain.surface.vertex_count() + 1, 0);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const Part& part = parts[i];
+        if (i > 0 && parts[i - 1].vertex == part.vertex && parts[i - 1].source == part.source) {
+            loads.back().second += part.load;
+        } else {
+            loads.emplace_back(part.source, part.load);
+            ++load_first[part.vertex + 1];
+        }
+    }
+    for (std::size_t v = 1; v < load_first.size(); ++v) load_first[v] += load_first[v - 1];
+}
+
+}  // namespace pvg

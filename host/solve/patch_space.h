@@ -1,0 +1,40 @@
+// What all patches of a domain share: operator, cells, couplings and loads.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include "curves/domain.h"
+#include "solve/knots.h"
+#include "solve/log_map.h"
+#include "solve/voronoi.h"
+
+namespace pvg {
+
+/// Read-only once made. V vertices, N cells. The domain and the knots must outlive it.
+class PatchSpace {
+public:
+    PatchSpace(const Domain& domain, const Knots& knots, const Voronoi& voronoi);
+
+    const Domain& domain;
+    const Knots& knots;
+    Eigen::SparseMatrix<double> S;     ///< V x V stiffness on the intrinsic Delaunay triangulation of the whole domain
+    std::vector<int> partner;          ///< V: the other copy of a vertex on a sharp Poisson curve, or none
+    std::vector<char> is_right;        ///< V: 1 for the right copy
+    std::vector<int> neighbour_first;  ///< N + 1: cells that touch or that an edge of S or a sharp Poisson curve joins, ascending
+    std::vector<int> neighbours;
+    std::vector<int> cell_first;                ///< N + 1
+    std::vector<int> cell_vertices;             ///< ascending in each cell
+    std::vector<int> load_first;                ///< V + 1
+    std::vector<std::pair<int, double>> loads;  ///< per vertex: (source, integral of its unit profile times the hat function)
+    LogMap log_map;
+
+private:
+    void join_cells(const Voronoi& voronoi);
+    void sort_vertices(const Voronoi& voronoi);
+    void integrate_sources();
+};
+
+}  // namespace pvg

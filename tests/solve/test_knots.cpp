@@ -1,0 +1,157 @@
+#include "solve/knots.h"
+
+#include <gtest/gtest.h>
+
+#include "fixtures/domains.h"
+#include "geodesic/geodesic.h"
+#include "pvg/status.h"
+
+namespace pvg {
+namespace {
+
+using fixtures::plain_domain;
+
+std::vector<double> distance_to(const Surface& surface, const std::vector<char>& marked) {
+    std::vector<GeodesicSource> sources;
+    for (int v = 0; v < surface.vertex_count(); ++v)
+        if (marked[v])
+            sources.push_back({at_vertex(surface, v), 0});
+    return geodesic_distances(surface, sources).distance;
+}
+
+struct Sampled {
+    Domain domain;
+    KnotOptions options;
+    Knots knots;
+    std::vector<double> wanted;  // the sizing field, from exact distances
+    std::vector<double> curve;
+};
+
+Sampled sampled_square() {
+    Sampled s{fixtures::slit_square(4000).domain, {}, {}, {}, {}};
+    s.options.spacing = 0.06;
+    s.knots = place_knots(s.domain, s.options);
+    s.curve = distance_to(s.domain.surface, s.domain.on_curve);
+    const std::vector<double> feature = distance_to(s.domain.surface, s.domain.feature);
+    for (std::size_t v = 0; v < s.curve.size(); ++v)
+        s.wanted.push_back(std::max(s.domain.edge_length[v], std::min({s.options.spacing, s.options.grading * s.curve[v],
+                                                                       s.options.feature_grading * feature[v]})));
+    return s;
+}
+
+TEST(Knots, CurvesAndBordersAreKnots) {
+    const Sampled s = sampled_square();
+    for (int v = 0; v < s.domain.surface.vertex_count(); ++v)
+        if (s.domain.on_curve[v] || s.domain.surface.is_border_vertex(v)) {
+            EXPECT_NE(s.knots.knot_of_vertex[v], none) << v;
+        }
+    EXPECT_TRUE(std::is_sorted(s.knots.vertex.begin(), s.knots.vertex.end()));
+    for (std::size_t k = 0; k < s.knots.vertex.size(); ++k)
+        EXPECT_EQ(s.knots.knot_of_vertex[s.knots.vertex[k]], static_cast<int>(k));
+}
+
+TEST(Knots, NoVertexIsFartherThanItsSizeFromAKnot) {
+    const Sampled s = sampled_square();
+    std::vector<char> marked(s.domain.surface.vertex_count(), 0);
+    for (int v : s.knots.vertex) marked[v] = 1;
+    const std::vector<double> distance = distance_to(s.domain.surface, marked);
+    // The sizing field sees distances that are up to 4 % longer (graph instead of geodesic).
+    for (std::size_t v = 0; v < distance.size(); ++v) EXPECT_LE(distance[v], 1.04 * s.wanted[v]) << v;
+}
+
+TEST(Knots, FilledKnotsKeepTheirDistance) {
+    const Sampled s = sampled_square();
+    for (int v : s.knots.vertex) {
+        if (s.domain.on_curve[v] || s.domain.surface.is_border_vertex(v))
+            continue;
+        double nearest = 1;
+        for (int w : s.knots.vertex)
+            if (w != v)
+                nearest = std::min(nearest, (s.domain.surface.point(v) - s.domain.surface.point(w)).norm());
+        // Never nearer than half an edge; elsewhere than the size at the later one of two, which changes by a quarter of their
+        // distance.
+        const double floor = s.wanted[v] > 1.05 * s.domain.edge_length[v] ? 0.6 * s.wanted[v] : 0.45 * s.domain.edge_length[v];
+        EXPECT_GE(nearest, floor) << v;
+    }
+}
+
+TEST(Knots, DensityIsAboutOnePerSquaredSize) {
+    Domain domain = plain_domain(fixtures::irregular_plane(80, 80));
+    KnotOptions options;
+    options.spacing = 0.05;
+    const Knots knots = place_knots(domain, options);
+    int inside = 0;
+    for (int v : knots.vertex) inside += !domain.surface.is_border_vertex(v);
+    // Hexagonal packing has 1.15, random maximal packing about 0.7.
+    EXPECT_GT(inside * options.spacing * options.spacing, 0.75);
+    EXPECT_LT(inside * options.spacing * options.spacing, 1.15);
+}
+
+TEST(Knots, GradeTowardsFeatures) {
+    Domain domain = plain_domain(fixtures::irregular_plane(60, 60));
+    const int middle = fixtures::nearest_vertex(domain.surface, Point(0.5, 0.5, 0));
+    KnotOptions options;
+    options.spacing = 0.1;
+    const auto count_near = [&] {
+        int count = 0;
+        for (int v : place_knots(domain, options).vertex)
+            count += (domain.surface.point(v) - domain.surface.point(middle)).norm() < 0.2;
+        return count;
+    };
+    const int before = count_near();
+    domain.feature[middle] = 1;
+    EXPECT_GT(count_near(), 3 * before);
+}
+
+TEST(Knots, TwiceAsDenseBesideACurveInASource) {
+    Domain domain = plain_domain(fixtures::irregular_plane(60, 60));
+    KnotOptions options;
+    options.spacing = 0.1;
+    for (double& length : domain.edge_length) length = 3.0 / 60;  // the input was three times as coarse
+    const auto count_near_border = [&] {
+        int count = 0;
+        for (int v : place_knots(domain, options).vertex)
+            count += !domain.surface.is_border_vertex(v) && domain.surface.point(v).x() < 0.2;
+        return count;
+    };
+    for (int v = 0; v < domain.surface.vertex_count(); ++v) domain.on_curve[v] = domain.surface.is_border_vertex(v);
+    const int before = count_near_border();
+    SourceColumn source{"ring", {}, Eigen::RowVectorXd::Ones(1)};
+    for (int f = 0; f < domain.surface.face_count(); ++f) source.profile.emplace_back(f, 0.0);
+    domain.sources = {source};
+    EXPECT_EQ(count_near_border(), before);  // a Laplacian of 0 is none
+    for (auto& [face, laplacian] : domain.sources[0].profile) laplacian = -1;
+    EXPECT_GT(count_near_border(), 1.5 * before);
+}
+
+TEST(Knots, DoNotDependOnScale) {
+    Domain domain = fixtures::slit_square(2000).domain;
+    KnotOptions options;
+    options.spacing = 0.07;
+    const Knots first = place_knots(domain, options);
+    domain.surface = fixtures::scaled(domain.surface, 4);  // a power of two: the same bits
+    for (double& length : domain.edge_length) length *= 4;
+    options.spacing *= 4;
+    EXPECT_EQ(place_knots(domain, options).vertex, first.vertex);
+}
+
+TEST(Knots, EveryComponentGetsOne) {
+    const Surface ball = fixtures::icosphere(4);
+    std::vector<Point> points = ball.points();
+    std::vector<Face> faces = ball.faces();
+    for (const Point& p : ball.points()) points.push_back(p + Point(5, 0, 0));
+    for (const Face& f : ball.faces())
+        faces.push_back({f[0] + ball.vertex_count(), f[1] + ball.vertex_count(), f[2] + ball.vertex_count()});
+    const Domain domain = plain_domain(Surface(points, faces));
+    KnotOptions options;
+    options.spacing = 100;
+    const Knots knots = place_knots(domain, options);
+    ASSERT_EQ(knots.vertex.size(), 2u);
+    EXPECT_LT(knots.vertex[0], ball.vertex_count());
+    EXPECT_GE(knots.vertex[1], ball.vertex_count());
+}
+
+TEST(Knots, RefuseSpacingZero) { EXPECT_THROW(place_knots(plain_domain(fixtures::plane(4, 4)), {}), Error); }
+
+}  // namespace
+}  // namespace pvg
