@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <thread>
 
+#include <Eigen/Core>
+
 #include "kernels/shared.h"
 
 namespace pvg {
@@ -23,23 +25,35 @@ void for_ranges(std::size_t count, int threads, const Body& body) {
     body(0, count / parts);
 }
 
-/// Rows first .. last - 1 of one cell, several rows at a time; each row's own sum keeps its order.
+/// Rows first .. last - 1 of one cell, `block` at a time and the rest left over; each row's own sum keeps its order. Returns
+/// the first row that is left. Channels come as four and one, so that the four are one vector on every compiler.
 template <int channels, int block>
 std::size_t evaluate_block(const float* coefficients, const std::uint32_t* list, std::size_t stride, const float* weights,
                            std::size_t first, std::size_t last, float* values) {
+    using Color = Eigen::Array4f;
     std::size_t row = first;
     for (; row + block <= last; row += block) {
-        float sum[block][channels] = {};
+        Color color[block];
+        float scalar[block] = {};
+        for (Color& sum : color) sum.setZero();
         const float* w = weights + (row - first) * stride;
         for (std::size_t k = 0; k < stride; ++k) {
             const float* c = coefficients + std::size_t(list[k]) * channels;
             for (int r = 0; r < block; ++r) {
-                for (int channel = 0; channel < channels; ++channel) {
-                    sum[r][channel] = sum[r][channel] + w[std::size_t(r) * stride + k] * c[channel];
-                }
+                const float weight = w[std::size_t(r) * stride + k];
+                if constexpr (channels >= 4)
+                    color[r] = color[r] + weight * Eigen::Map<const Color>(c);
+                if constexpr (channels != 4)
+                    scalar[r] = scalar[r] + weight * c[channels - 1];
             }
         }
-        std::copy(&sum[0][0], &sum[0][0] + block * channels, values + row * channels);
+        float* out = values + row * channels;
+        for (int r = 0; r < block; ++r, out += channels) {
+            if constexpr (channels >= 4)
+                Eigen::Map<Color>{out} = color[r];
+            if constexpr (channels != 4)
+                out[channels - 1] = scalar[r];
+        }
     }
     return row;
 }
@@ -47,7 +61,8 @@ std::size_t evaluate_block(const float* coefficients, const std::uint32_t* list,
 template <int channels>
 void evaluate_rows(const Field& field, std::size_t first, std::size_t last, float* values) {
     const Table& table = field.table;
-    if (first == last) return;
+    if (first == last)
+        return;
     const float* coefficients = field.coefficients.data();
     auto cell = std::size_t(std::upper_bound(table.cell_first_row.begin(), table.cell_first_row.end(), first) -
                             table.cell_first_row.begin() - 1);
@@ -96,17 +111,20 @@ std::array<float, 3> shading_normal(const Program& program, const std::vector<st
         const float e[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
         const float dd = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
         const float ee = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
-        if (!(dd >= PVG_EDGE_MIN && dd <= PVG_EDGE_MAX && ee >= PVG_EDGE_MIN && ee <= PVG_EDGE_MAX)) continue;
+        if (!(dd >= PVG_EDGE_MIN && dd <= PVG_EDGE_MAX && ee >= PVG_EDGE_MIN && ee <= PVG_EDGE_MAX))
+            continue;
         const float inverse_d = kernels::inverse_square_root(dd);
         const float inverse_e = kernels::inverse_square_root(ee);
         float c[3] = {d[1] * e[2] - d[2] * e[1], d[2] * e[0] - d[0] * e[2], d[0] * e[1] - d[1] * e[0]};
         for (float& x : c) x = x * inverse_d * inverse_e;
-        if (!(largest(c) >= PVG_SINE_MIN)) continue;
+        if (!(largest(c) >= PVG_SINE_MIN))
+            continue;
         for (float& x : c) x = x * inverse_d * inverse_e;
         for (int axis = 0; axis < 3; ++axis) sum[axis] = sum[axis] + c[axis];
     }
     const float m = largest(sum);
-    if (!(m >= PVG_SUM_MIN)) return {0, 0, 0};
+    if (!(m >= PVG_SUM_MIN))
+        return {0, 0, 0};
     const float scale = kernels::inverse_power_of_two(m);
     const float s[3] = {sum[0] * scale, sum[1] * scale, sum[2] * scale};
     const float inverse = kernels::inverse_square_root(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
@@ -116,7 +134,8 @@ std::array<float, 3> shading_normal(const Program& program, const std::vector<st
 }  // namespace
 
 Evaluation evaluate_on_cpu(const Program& program, int threads) {
-    if (threads <= 0) threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    if (threads <= 0)
+        threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     Evaluation result;
     result.values.resize(program.fields.size());
     for (std::size_t f = 0; f < program.fields.size(); ++f) {
@@ -125,10 +144,17 @@ Evaluation evaluate_on_cpu(const Program& program, int threads) {
         values.resize(std::size_t(field.table.row_count) * field.table.channels);
         for_ranges(field.table.row_count, threads, [&](std::size_t first, std::size_t last) {
             switch (field.table.channels) {
-                case 1: evaluate_rows<1>(field, first, last, values.data()); break;
-                case 4: evaluate_rows<4>(field, first, last, values.data()); break;
-                case 5: evaluate_rows<5>(field, first, last, values.data()); break;
-                default: break;  // validate() admits no other count
+                case 1:
+                    evaluate_rows<1>(field, first, last, values.data());
+                    break;
+                case 4:
+                    evaluate_rows<4>(field, first, last, values.data());
+                    break;
+                case 5:
+                    evaluate_rows<5>(field, first, last, values.data());
+                    break;
+                default:
+                    break;  // validate() admits no other count
             }
         });
     }
