@@ -20,8 +20,9 @@ namespace pvg {
 /// The selected mesh as one triangle soup. Raw vertex = (primitive, vertex) in order of primitives; raw face likewise.
 struct RawMesh {
     std::string name;
-    std::vector<Point> points;                      ///< R: positions of raw vertices (decoded to the mesh's local coordinates; exact)
+    std::vector<Point> points;                      ///< R: positions, decoded to the mesh's local coordinates; exact
     std::vector<std::array<float, 4>> colors;       ///< R: COLOR_0, linear; white where the mesh has none
+    std::vector<std::array<float, 3>> base_colors;  ///< R: the material's base colour factor, linear; white where there is none
     std::vector<Point> normals;                     ///< R, or empty where a primitive has none
     std::vector<Face> faces;                        ///< raw triangles
     std::vector<int> face_primitive;                ///< per raw face
@@ -44,22 +45,22 @@ struct DecoratedMesh {
 
     /// Faces of the output surface: corners are output vertices.
     std::vector<Face> faces;
-    std::vector<int> raw_face;                      ///< the raw face that contains each
-    std::vector<Face> corner_normal;                ///< per corner: index into `normals`, or none: interpolate the input's normal
-    std::vector<std::array<float, 3>> normals;      ///< shading normals
+    std::vector<int> raw_face;                  ///< the raw face that contains each
+    std::vector<Face> corner_normal;            ///< per corner: index into `normals`, or none: interpolate the input's normal
+    std::vector<std::array<float, 3>> normals;  ///< shading normals
 
     /// Walls that close the cliff of a two-height diffusion curve: triangles with own vertices.
     struct Wall {
-        std::array<int, 3> vertex;                  ///< output vertices that lend position and colour
-        std::array<float, 3> normal;                ///< flat
-        int raw_face = none;                        ///< lends primitive, material and other attributes
+        std::array<int, 3> vertex;    ///< output vertices that lend position and colour
+        std::array<float, 3> normal;  ///< flat
+        int raw_face = none;          ///< lends primitive, material and other attributes
     };
     std::vector<Wall> walls;
 };
 
 struct WriteOptions {
     bool fields = false;
-    nlohmann::json scene;      ///< embedded in extras.pvg
+    nlohmann::json scene;  ///< embedded in extras.pvg
 };
 
 /// An input file, kept whole.
@@ -72,10 +73,11 @@ public:
     MeshAsset& operator=(MeshAsset&&) noexcept;
 
     const RawMesh& mesh() const;
-    /// For each raw face, the welded vertices of its corners are needed to find raw attributes again: corner k of raw face f is welded vertex
-    /// welded_faces[f][k] (none for a face that welding left out; such faces are written unchanged).
+    /// For each raw face, the welded vertices of its corners are needed to find raw attributes again: corner k of raw face f is
+    /// welded vertex welded_faces[f][k] (none for a face that welding left out; such faces are written unchanged).
     /// Writes OUT atomically. Throws Error(output) or Error(bad_input).
-    void write(const std::filesystem::path& out, const DecoratedMesh& mesh, const std::vector<Face>& welded_faces, const WriteOptions& options, Warnings& warnings) const;
+    void write(const std::filesystem::path& out, const DecoratedMesh& mesh, const std::vector<Face>& welded_faces,
+               const WriteOptions& options, Warnings& warnings) const;
 
     /// A scene embedded by an earlier decorate, if any.
     std::optional<nlohmann::json> embedded_scene() const;
