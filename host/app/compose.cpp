@@ -11,7 +11,8 @@ namespace {
 /// The values of one domain at an output vertex: a row of `channels` floats, or nothing where the domain does not reach.
 const float* values_at(const Build& build, const Evaluation& evaluation, int domain, int output_vertex) {
     const int vertex = build.arrangement.domain_vertex[domain][output_vertex];
-    if (vertex == none) return nullptr;
+    if (vertex == none)
+        return nullptr;
     const Table& table = build.program.fields[domain].table;
     return evaluation.values[domain].data() + static_cast<std::size_t>(table.vertex_row[vertex]) * table.channels;
 }
@@ -24,7 +25,8 @@ Color field_color(const float* row, int channel, ColorSpace space) {
 Color input_color(const Build& build, const RawMesh& raw, int output_vertex) {
     const Arrangement& a = build.arrangement;
     const int h = a.output.outgoing(output_vertex);
-    if (h == none) return Color::Ones();
+    if (h == none)
+        return Color::Ones();
     const int raw_face = build.welded.face_raw[build.map.face[h / 3]];
     const VertexOrigin& origin = build.map.vertex[a.output_parent[output_vertex]];
     Color sum = Color::Zero();
@@ -37,7 +39,8 @@ Color input_color(const Build& build, const RawMesh& raw, int output_vertex) {
     return sum;
 }
 
-void compose_fields(const Scene& scene, const RawMesh& raw, const Build& build, const Evaluation& evaluation, DecoratedMesh& mesh) {
+void compose_fields(const Scene& scene, const RawMesh& raw, const Build& build, const Evaluation& evaluation,
+                    DecoratedMesh& mesh) {
     const Arrangement& a = build.arrangement;
     const int n = a.output.vertex_count();
     mesh.decorated.assign(n, 0);
@@ -54,14 +57,18 @@ void compose_fields(const Scene& scene, const RawMesh& raw, const Build& build, 
             const LayerFields& fields = a.layers[l];
             for (int part = 0; part < 2; ++part) {
                 const int domain = part == 0 ? fields.color_domain : fields.height_domain;
-                if (domain == none) continue;
+                if (domain == none)
+                    continue;
                 const float* row = values_at(build, evaluation, domain, v);
-                if (!row) continue;
+                if (!row)
+                    continue;
                 const int vertex = a.domain_vertex[domain][v];
                 mesh.decorated[v] = 1;
-                if (a.domains[domain].dirichlet[vertex]) mesh.dirichlet[v][part] = 1;
+                if (a.domains[domain].dirichlet[vertex])
+                    mesh.dirichlet[v][part] = 1;
                 mesh.cell[v][part] = static_cast<float>(build.domains[domain].voronoi.cell[vertex]);
-                if (part == 1) continue;
+                if (part == 1)
+                    continue;
                 const Color value = field_color(row, fields.color_channel, scene.color_space);
                 if (!mesh.color_decorated[v]) {
                     shown = input_color(build, raw, v);
@@ -76,7 +83,8 @@ void compose_fields(const Scene& scene, const RawMesh& raw, const Build& build, 
         }
         for (int c = 0; c < 4; ++c) {
             mesh.field_color[v][c] = static_cast<float>(color[c]);
-            if (mesh.color_decorated[v]) mesh.color[v][c] = static_cast<float>(shown[c]);
+            if (mesh.color_decorated[v])
+                mesh.color[v][c] = static_cast<float>(shown[c]);
         }
     }
 }
@@ -87,23 +95,31 @@ void raise_walls(const Build& build, DecoratedMesh& mesh) {
     const auto add = [&](int a, int b, int c, int raw_face) {
         const Point normal = (at(b) - at(a)).cross(at(c) - at(a));
         const double size = normal.norm();
-        if (!(size > 0)) return;
-        mesh.walls.push_back({{a, b, c}, {static_cast<float>(normal[0] / size), static_cast<float>(normal[1] / size), static_cast<float>(normal[2] / size)}, raw_face});
+        if (!(size > 0))
+            return;
+        mesh.walls.push_back(
+            {{a, b, c},
+             {static_cast<float>(normal[0] / size), static_cast<float>(normal[1] / size), static_cast<float>(normal[2] / size)},
+             raw_face});
     };
     for (const SlitEdge& edge : build.arrangement.height_slits) {
-        if (edge.left_face == none || edge.right_face == none) continue;  // on a border there is nothing to close
+        if (edge.left_face == none || edge.right_face == none)
+            continue;  // on a border there is nothing to close
         const int raw_face = build.welded.face_raw[build.map.face[edge.left_face]];
         const auto [l0, l1] = edge.left;
         const auto [r0, r1] = edge.right;
         // The left face runs l0 -> l1 along this edge, so the wall's boundary runs l1 -> l0 and r0 -> r1.
-        if (mesh.position[l1] != mesh.position[r1]) add(l1, l0, r1, raw_face);
-        if (mesh.position[l0] != mesh.position[r0]) add(l0, r0, r1, raw_face);
+        if (mesh.position[l1] != mesh.position[r1])
+            add(l1, l0, r1, raw_face);
+        if (mesh.position[l0] != mesh.position[r0])
+            add(l0, r0, r1, raw_face);
     }
 }
 
 }  // namespace
 
-DecoratedMesh compose(const Scene& scene, const RawMesh& raw, const Build& build, const Evaluation& evaluation, const ComposeOptions& options) {
+DecoratedMesh compose(const Scene& scene, const RawMesh& raw, const Build& build, const Evaluation& evaluation,
+                      const ComposeOptions& options) {
     const Arrangement& a = build.arrangement;
     const int n = a.output.vertex_count();
     DecoratedMesh mesh;
@@ -121,8 +137,10 @@ DecoratedMesh compose(const Scene& scene, const RawMesh& raw, const Build& build
     for (int v = 0; v < n; ++v) mesh.moved[v] = mesh.position[v] != mesh.base[v];
     // Without displacement the surface is the input's, and so are its normals where it has some.
     mesh.corner_normal = build.corner_normal;
-    if (!options.displace && !raw.normals.empty()) mesh.corner_normal.assign(mesh.faces.size(), Face{none, none, none});
-    if (options.displace) raise_walls(build, mesh);
+    if (!options.displace && !raw.normals.empty())
+        mesh.corner_normal.assign(mesh.faces.size(), Face{none, none, none});
+    if (options.displace)
+        raise_walls(build, mesh);
     return mesh;
 }
 

@@ -11,6 +11,7 @@ struct ComposeOptions {
     bool displace = true;  ///< false: --no-displace; the program was then evaluated with unit 0
 };
 
-DecoratedMesh compose(const Scene& scene, const RawMesh& raw, const Build& build, const Evaluation& evaluation, const ComposeOptions& options);
+DecoratedMesh compose(const Scene& scene, const RawMesh& raw, const Build& build, const Evaluation& evaluation,
+                      const ComposeOptions& options);
 
 }  // namespace pvg::app

@@ -11,7 +11,8 @@ namespace {
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 void line(std::string_view prefix, std::string_view text) {
-    std::fprintf(stderr, "%.*s%.*s\n", static_cast<int>(prefix.size()), prefix.data(), static_cast<int>(text.size()), text.data());
+    std::fprintf(stderr, "%.*s%.*s\n", static_cast<int>(prefix.size()), prefix.data(), static_cast<int>(text.size()),
+                 text.data());
 }
 
 }  // namespace
@@ -20,19 +21,22 @@ Console::Console(Loudness loudness) : loudness_(loudness), terminal_(isatty(STDE
 Console::~Console() { clear_line(); }
 
 void Console::note(std::string_view text) {
-    if (loudness_ != Loudness::verbose) return;
+    if (loudness_ != Loudness::verbose)
+        return;
     clear_line();
     line("", text);
 }
 
 void Console::say(std::string_view text) {
-    if (loudness_ == Loudness::quiet) return;
+    if (loudness_ == Loudness::quiet)
+        return;
     clear_line();
     line("", text);
 }
 
 void Console::warn(const Warnings& warnings) {
-    if (loudness_ == Loudness::quiet) return;
+    if (loudness_ == Loudness::quiet)
+        return;
     clear_line();
     for (const std::string& warning : warnings) line("warning: ", warning);
 }
@@ -40,7 +44,8 @@ void Console::warn(const Warnings& warnings) {
 void Console::fail(std::string_view text) { line("pvg: ", text); }
 
 void Console::stage(int number, int count, std::string_view name) {
-    if (loudness_ == Loudness::quiet || !terminal_ || now() - started_ < 1) return;
+    if (loudness_ == Loudness::quiet || !terminal_ || now() - started_ < 1)
+        return;
     constexpr int width = 30;
     const int filled = count > 0 ? width * number / count : width;
     std::fprintf(stderr, "\r\033[K[");
@@ -53,7 +58,8 @@ void Console::stage(int number, int count, std::string_view name) {
 void Console::stages_done() { clear_line(); }
 
 void Console::clear_line() {
-    if (!line_shown_) return;
+    if (!line_shown_)
+        return;
     std::fprintf(stderr, "\r\033[K");
     std::fflush(stderr);
     line_shown_ = false;

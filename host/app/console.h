@@ -17,9 +17,9 @@ public:
     Console(const Console&) = delete;
     Console& operator=(const Console&) = delete;
 
-    void note(std::string_view text);     ///< with -v only
-    void say(std::string_view text);      ///< unless -q
-    void warn(const Warnings& warnings);  ///< "warning: ..." each, unless -q
+    void note(std::string_view text);         ///< with -v only
+    void say(std::string_view text);          ///< unless -q
+    void warn(const Warnings& warnings);      ///< "warning: ..." each, unless -q
     static void fail(std::string_view text);  ///< always
 
     /// A stage begins. On a terminal, after the first second, one line shows what is going on; in a pipe nothing.

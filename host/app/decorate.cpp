@@ -25,7 +25,8 @@ double entries_per_vertex(const Build& build) {
         for (std::uint32_t c = 0; c < table.cell_count; ++c) {
             const double width = table.cell_first_index[c + 1] - table.cell_first_index[c];
             for (std::uint32_t r = table.cell_first_row[c]; r < table.cell_first_row[c + 1]; ++r) {
-                if (build.arrangement.domains[d].dirichlet[table.row_vertex[r]]) continue;
+                if (build.arrangement.domains[d].dirichlet[table.row_vertex[r]])
+                    continue;
                 pairs += width;
                 ++vertices;
             }
@@ -34,7 +35,8 @@ double entries_per_vertex(const Build& build) {
     return vertices > 0 ? pairs / vertices : 0;
 }
 
-nlohmann::ordered_json report_of(const Project& project, const DecoratedMesh& mesh, const DeviceResult& device, double write_seconds, double total, const Warnings& warnings) {
+nlohmann::ordered_json report_of(const Project& project, const DecoratedMesh& mesh, const DeviceResult& device,
+                                 double write_seconds, double total, const Warnings& warnings) {
     const Build& build = project.build;
     std::size_t primitives = 0, knots = 0, unknowns = 0, bytes = 0, decorated = 0;
     for (const Layer& layer : project.scene.layers)
@@ -51,7 +53,8 @@ nlohmann::ordered_json report_of(const Project& project, const DecoratedMesh& me
     for (const char* name : {"curves", "knots", "voronoi", "system", "basis"}) {
         stages[name] = 0.0;
         for (const auto& [stage, seconds] : build.seconds)
-            if (stage == name) stages[name] = seconds;
+            if (stage == name)
+                stages[name] = seconds;
     }
     stages["upload"] = device.upload_seconds;
     stages["evaluate"] = device.evaluate_seconds;
@@ -62,7 +65,10 @@ nlohmann::ordered_json report_of(const Project& project, const DecoratedMesh& me
     return {{"pvg", PVG_VERSION},
             {"scene", project.scene.file.string()},
             {"device", {{"name", device.name}, {"type", device.type}}},
-            {"vertices", {{"in", build.welded.surface.vertex_count()}, {"out", build.arrangement.output.vertex_count()}, {"decorated", decorated}}},
+            {"vertices",
+             {{"in", build.welded.surface.vertex_count()},
+              {"out", build.arrangement.output.vertex_count()},
+              {"decorated", decorated}}},
             {"primitives", primitives},
             {"knots", knots},
             {"unknowns", unknowns},
@@ -85,23 +91,28 @@ int decorate(const DecorateOptions& options, Console& console) {
     Project project = open_project(options.scene, options.assignments, options.threads, console, warnings);
 
     console.stage(7, 9, "evaluate");
-    if (options.no_displace) project.build.program.unit = 0;
+    if (options.no_displace)
+        project.build.program.unit = 0;
     const DeviceResult device = evaluate(project.build.program, choice, options.threads, warnings);
-    const DecoratedMesh mesh = compose(project.scene, project.asset.mesh(), project.build, device.evaluation, {.displace = !options.no_displace});
+    const DecoratedMesh mesh =
+        compose(project.scene, project.asset.mesh(), project.build, device.evaluation, {.displace = !options.no_displace});
 
     console.stage(8, 9, "write");
     const auto write_started = Clock::now();
-    project.asset.write(options.out, mesh, project.build.welded.raw_to_welded, {.fields = options.fields, .scene = project.scene.document}, warnings);
+    project.asset.write(options.out, mesh, project.build.welded.raw_to_welded,
+                        {.fields = options.fields, .scene = project.scene.document}, warnings);
     const double write_seconds = since(write_started);
 
     console.stages_done();
     console.warn(warnings);
     const nlohmann::ordered_json report = report_of(project, mesh, device, write_seconds, since(started), warnings);
-    if (options.report) write_text(*options.report, report.dump(2) + "\n");
+    if (options.report)
+        write_text(*options.report, report.dump(2) + "\n");
     char line[512];
-    std::snprintf(line, sizeof line, "%s: %d vertices, %zu decorated, %zu knots, %.1f entries a vertex, %s, %.2f s", options.out.c_str(),
-                  report["vertices"]["out"].get<int>(), report["vertices"]["decorated"].get<std::size_t>(), report["knots"].get<std::size_t>(),
-                  report["table"]["entries_per_vertex"].get<double>(), device.name.c_str(), report["total"].get<double>());
+    std::snprintf(line, sizeof line, "%s: %d vertices, %zu decorated, %zu knots, %.1f entries a vertex, %s, %.2f s",
+                  options.out.c_str(), report["vertices"]["out"].get<int>(), report["vertices"]["decorated"].get<std::size_t>(),
+                  report["knots"].get<std::size_t>(), report["table"]["entries_per_vertex"].get<double>(), device.name.c_str(),
+                  report["total"].get<double>());
     console.say(line);
     for (const auto& [stage, seconds] : report["stages"].items()) {
         std::snprintf(line, sizeof line, "  %-9s %8.3f s", stage.c_str(), seconds.get<double>());

@@ -12,7 +12,7 @@ namespace pvg::app {
 /// --device auto | vulkan | vulkan:NAME | cpu
 struct DeviceChoice {
     enum class Kind { automatic, vulkan, cpu } kind = Kind::automatic;
-    std::string name;      ///< part of a device's name, or its number; empty: the best
+    std::string name;         ///< part of a device's name, or its number; empty: the best
     bool validation = false;  ///< run with the validation layers; any message is an error
 };
 
@@ -27,8 +27,8 @@ struct DeviceResult {
     Evaluation evaluation;
 };
 
-/// Evaluates where the choice says. `automatic` without a Vulkan device uses the CPU and adds one warning; a device that is asked for
-/// and missing, or that fails, is Error(device).
+/// Evaluates where the choice says. `automatic` without a Vulkan device uses the CPU and adds one warning; a device that is asked
+/// for and missing, or that fails, is Error(device).
 DeviceResult evaluate(const Program& program, const DeviceChoice& choice, int threads, Warnings& warnings);
 
 /// The Vulkan result alone, or nothing (with the reason) where there is no device.

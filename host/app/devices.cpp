@@ -14,12 +14,14 @@ int devices(const DevicesOptions& options, Console& console) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
 #ifdef PVG_HAS_VULKAN
     const auto found = list_vulkan_devices();
-    if (!found) throw Error(found.error());
+    if (!found)
+        throw Error(found.error());
     for (const VulkanDeviceInfo& device : found.value())
         list.push_back({{"name", device.name},
                         {"type", device.type},
                         {"driver", device.driver},
-                        {"api", std::to_string(device.api_major) + "." + std::to_string(device.api_minor) + "." + std::to_string(device.api_patch)},
+                        {"api", std::to_string(device.api_major) + "." + std::to_string(device.api_minor) + "." +
+                                    std::to_string(device.api_patch)},
                         {"usable", device.usable},
                         {"reason", device.reason},
                         {"auto", device.preferred}});
@@ -35,9 +37,11 @@ int devices(const DevicesOptions& options, Console& console) {
     std::printf("%-5s %-10s %-8s %-8s %s\n", "", "type", "api", "usable", "name (driver)");
     int number = 0;
     for (const auto& device : list) {
-        std::printf("%-5s %-10s %-8s %-8s %d: %s (%s)%s%s\n", device["auto"].get<bool>() ? "auto" : "", device["type"].get<std::string>().c_str(), device["api"].get<std::string>().c_str(),
-                    device["usable"].get<bool>() ? "yes" : "no", number++, device["name"].get<std::string>().c_str(), device["driver"].get<std::string>().c_str(),
-                    device["usable"].get<bool>() ? "" : ": ", device["reason"].get<std::string>().c_str());
+        std::printf("%-5s %-10s %-8s %-8s %d: %s (%s)%s%s\n", device["auto"].get<bool>() ? "auto" : "",
+                    device["type"].get<std::string>().c_str(), device["api"].get<std::string>().c_str(),
+                    device["usable"].get<bool>() ? "yes" : "no", number++, device["name"].get<std::string>().c_str(),
+                    device["driver"].get<std::string>().c_str(), device["usable"].get<bool>() ? "" : ": ",
+                    device["reason"].get<std::string>().c_str());
     }
     return 0;
 }

@@ -33,10 +33,14 @@ void add_device(CLI::App& command, std::string& device, int& threads) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app{"Poisson vector graphics on triangle meshes: curves with colours and heights become smooth colours and real relief.", "pvg"};
+    CLI::App app{
+        "Poisson vector graphics on triangle meshes: curves with colours and heights become smooth colours and real relief.",
+        "pvg"};
     app.set_version_flag("--version", PVG_VERSION);
     app.require_subcommand(1);
-    app.footer("Exit codes: 0 done, 1 a check failed, 2 wrong usage, 3 bad input, 4 no usable device or it failed, 5 the output could not be written.");
+    app.footer(
+        "Exit codes: 0 done, 1 a check failed, 2 wrong usage, 3 bad input, 4 no usable device or it failed, 5 the output could "
+        "not be written.");
     Common common;
 
     DecorateOptions decorate_options;
@@ -44,18 +48,27 @@ int main(int argc, char** argv) {
     decorate_command->add_option("SCENE", decorate_options.scene, "Scene file NAME.pvg.json")->required();
     decorate_command->add_option("-o,--output", decorate_options.out, "The .glb to write; replaced atomically")->required();
     add_device(*decorate_command, decorate_options.device, decorate_options.threads);
-    decorate_command->add_flag("--fields", decorate_options.fields, "Add the float attributes _PVG_COLOR, _PVG_HEIGHT, _PVG_DIRICHLET, _PVG_CELL, _PVG_BASE");
+    decorate_command->add_flag("--fields", decorate_options.fields,
+                               "Add the float attributes _PVG_COLOR, _PVG_HEIGHT, _PVG_DIRICHLET, _PVG_CELL, _PVG_BASE");
     decorate_command->add_flag("--no-displace", decorate_options.no_displace, "Colours only: leave every vertex where it is");
     decorate_command->add_option("--report", decorate_options.report, "Write times, sizes and warnings as JSON");
-    decorate_command->add_option("--set", decorate_options.assignments, "Change the scene before it is read: ID.KEY[.KEY...]=VALUE (repeatable)")->take_all();
+    decorate_command
+        ->add_option("--set", decorate_options.assignments,
+                     "Change the scene before it is read: ID.KEY[.KEY...]=VALUE (repeatable)")
+        ->take_all();
     add_common(*decorate_command, common);
 
     CheckOptions check_options;
     CLI::App* check_command = app.add_subcommand("check", "Compare GPU with CPU, and both with a finite-element solution");
     check_command->add_option("SCENE", check_options.scene, "Scene file NAME.pvg.json")->required();
     add_device(*check_command, check_options.device, check_options.threads);
-    check_command->add_option("--tolerance", check_options.tolerance, "MEAN,MAX,H1 in % of each channel's range; beyond it the exit code is 1")->capture_default_str();
-    check_command->add_option("--set", check_options.assignments, "Change the scene before it is read: ID.KEY[.KEY...]=VALUE (repeatable)")->take_all();
+    check_command
+        ->add_option("--tolerance", check_options.tolerance,
+                     "MEAN,MAX,H1 in % of each channel's range; beyond it the exit code is 1")
+        ->capture_default_str();
+    check_command
+        ->add_option("--set", check_options.assignments, "Change the scene before it is read: ID.KEY[.KEY...]=VALUE (repeatable)")
+        ->take_all();
     check_command->add_flag("--json", check_options.json, "Print one JSON document instead of a table");
     add_common(*check_command, common);
 
@@ -63,7 +76,9 @@ int main(int argc, char** argv) {
     CLI::App* make_command = app.add_subcommand("make", "Write a procedural mesh: cuboid, sphere, plane, torus, vase or stele");
     make_command->add_option("SHAPE", make_options.shape, "cuboid, sphere, plane, torus, vase or stele")->required();
     make_command->add_option("-o,--output", make_options.out, "The .glb to write")->required();
-    make_command->add_option("--vertices", make_options.vertices, "About how many vertices")->check(CLI::Range(8, 50'000'000))->capture_default_str();
+    make_command->add_option("--vertices", make_options.vertices, "About how many vertices")
+        ->check(CLI::Range(8, 50'000'000))
+        ->capture_default_str();
     add_common(*make_command, common);
 
     InfoOptions info_options;
@@ -85,10 +100,14 @@ int main(int argc, char** argv) {
 
     try {
         Console console(common.loudness());
-        if (*decorate_command) return decorate(decorate_options, console);
-        if (*check_command) return check(check_options, console);
-        if (*make_command) return make(make_options, console);
-        if (*info_command) return info(info_options, console);
+        if (*decorate_command)
+            return decorate(decorate_options, console);
+        if (*check_command)
+            return check(check_options, console);
+        if (*make_command)
+            return make(make_options, console);
+        if (*info_command)
+            return info(info_options, console);
         return devices(devices_options, console);
     } catch (const pvg::Error& error) {
         Console::fail(error.what());

@@ -9,11 +9,14 @@
 
 namespace pvg::app {
 
-Project open_project(const std::filesystem::path& scene_file, const std::vector<std::string>& assignments, int threads, Console& console, Warnings& warnings) {
+Project open_project(const std::filesystem::path& scene_file, const std::vector<std::string>& assignments, int threads,
+                     Console& console, Warnings& warnings) {
     const auto started = std::chrono::steady_clock::now();
     const std::string extension = scene_file.extension().string();
     if (extension == ".glb" || extension == ".gltf")
-        throw Error(ErrorKind::bad_input, scene_file.string() + ": this version decorates scenes (NAME.pvg.json); a scene inside a glTF cannot be edited yet");
+        throw Error(
+            ErrorKind::bad_input,
+            scene_file.string() + ": this version decorates scenes (NAME.pvg.json); a scene inside a glTF cannot be edited yet");
     console.stage(0, 9, "read");
     Scene scene = read_scene(scene_file, assignments);
     MeshAsset asset = MeshAsset::read(scene.mesh_file, scene.mesh_select, warnings);
@@ -41,14 +44,17 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
     };
     {
         std::ofstream stream(temporary, std::ios::binary);
-        if (!stream) refuse("the folder does not exist or is not writable");
+        if (!stream)
+            refuse("the folder does not exist or is not writable");
         stream << text;
         stream.flush();
-        if (!stream) refuse("the disk may be full");
+        if (!stream)
+            refuse("the disk may be full");
     }
     std::error_code error;
     std::filesystem::rename(temporary, file, error);
-    if (error) refuse(error.message());
+    if (error)
+        refuse(error.message());
 }
 
 }  // namespace pvg::app

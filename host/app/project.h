@@ -21,7 +21,8 @@ struct Project {
 };
 
 /// Reads the scene and its mesh and builds everything up to the program. Throws Error.
-Project open_project(const std::filesystem::path& scene, const std::vector<std::string>& assignments, int threads, Console& console, Warnings& warnings);
+Project open_project(const std::filesystem::path& scene, const std::vector<std::string>& assignments, int threads,
+                     Console& console, Warnings& warnings);
 
 /// Writes a text file atomically (temporary file beside it, then rename). Throws Error(output).
 void write_text(const std::filesystem::path& file, const std::string& text);

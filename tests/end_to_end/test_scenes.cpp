@@ -1,0 +1,80 @@
+// The project's own scenes through the command: valid glTF, right by finite elements, the same on GPU and CPU.
+#include "end_to_end/command.h"
+
+namespace pvg::test {
+namespace {
+
+using nlohmann::json;
+
+const char* environment(const char* name) {
+    const char* value = std::getenv(name);
+    return value && *value ? value : nullptr;
+}
+
+class Scenes : public CommandTest, public testing::WithParamInterface<const char*> {
+protected:
+    /// The scene beside its mesh in the folder; false where what makes the mesh is not at hand.
+    bool prepare(std::string& reason) {
+        const std::string name = GetParam();
+        const fs::path scenes = fs::path(PVG_SOURCE_DIR) / "scenes";
+        const fs::path file = name + ".pvg.json";
+        fs::copy_file(scenes / file, folder / file, fs::copy_options::overwrite_existing);
+        const json document = json::parse(read_all(folder / file));
+        const fs::path mesh = document["mesh"]["file"].get<std::string>();
+        if (name == "bunny") {
+            const char* modules = environment("PVG_NODE_MODULES");
+            if (!modules) {
+                reason = "PVG_NODE_MODULES is not set: no bunny";
+                return false;
+            }
+            const std::string line = "node " + quoted((scenes / "bunny_glb.mjs").string()) + " " + quoted(modules) + " " +
+                                     quoted((folder / mesh).string()) + " >/dev/null";
+            EXPECT_EQ(std::system(line.c_str()), 0);
+            return true;
+        }
+        return make(name, mesh);
+    }
+    bool make(const std::string& name, const fs::path& mesh) {
+        const Outcome made =
+            pvg("make " + std::string(name == "two_regions" ? "plane" : "cuboid") + " --vertices 40000 -o " + mesh.string());
+        EXPECT_EQ(made.exit, 0) << made.err;
+        return made.exit == 0;
+    }
+};
+
+TEST_P(Scenes, GpuAgreesWithCpuAndBothWithFiniteElements) {
+    std::string reason;
+    if (!prepare(reason))
+        GTEST_SKIP() << reason;
+    const Outcome outcome = pvg("check " + std::string(GetParam()) + ".pvg.json --json");
+    const json result = json::parse(outcome.out);
+    std::printf("%s\n", result.dump().c_str());
+    EXPECT_EQ(outcome.exit, 0) << outcome.err;
+    if (result["gpu_cpu"].is_null())
+        GTEST_SKIP() << "no Vulkan device";
+    EXPECT_TRUE(result["gpu_cpu"]["bit_identical"].get<bool>());
+}
+
+TEST_P(Scenes, OutputIsValidGltf) {
+    std::string reason;
+    if (!prepare(reason))
+        GTEST_SKIP() << reason;
+    const std::string name = GetParam();
+    const Outcome outcome = pvg("decorate " + name + ".pvg.json -o out.glb --fields --report r.json --device cpu");
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const json report = json::parse(read_all(folder / "r.json"));
+    std::printf("%s: %.1f entries a vertex, %d knots\n", name.c_str(), report["table"]["entries_per_vertex"].get<double>(),
+                report["knots"].get<int>());
+    EXPECT_LE(report["table"]["entries_per_vertex"].get<double>(), 28);
+    if (!environment("PVG_NODE_MODULES"))
+        GTEST_SKIP() << "PVG_NODE_MODULES is not set: no validator";
+    const std::string line =
+        "node " + quoted(std::string(PVG_SOURCE_DIR) + "/tests/gltf/validate.mjs") + " " + quoted((folder / "out.glb").string());
+    EXPECT_EQ(std::system(line.c_str()), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::Values("box", "flag", "two_regions", "bunny"),
+                         [](const auto& info) { return std::string(info.param); });
+
+}  // namespace
+}  // namespace pvg::test
