@@ -45,8 +45,8 @@ void for_each_parallel(int count, int threads, const Work& work) {
 
 class BasisBuilder {
 public:
-    BasisBuilder(const Domain& domain, const Knots& knots, const Voronoi& voronoi, const BasisTuning& tuning)
-        : domain_(domain), knots_(knots), space_(domain, knots, voronoi), tuning_(tuning) {}
+    BasisBuilder(const PatchSpace& space, const BasisTuning& tuning)
+        : domain_(space.domain), knots_(space.knots), space_(space), tuning_(tuning) {}
 
     int cells() const { return static_cast<int>(knots_.vertex.size()); }
     PatchSolver new_solver() const { return PatchSolver(space_, tuning_.patch); }
@@ -65,7 +65,7 @@ public:
 private:
     const Domain& domain_;
     const Knots& knots_;
-    PatchSpace space_;
+    const PatchSpace& space_;
     BasisTuning tuning_;
 };
 
@@ -137,9 +137,8 @@ Table BasisBuilder::assemble(const std::vector<CellBlock>& blocks) const {
 
 }  // namespace
 
-Table local_basis(const Domain& domain, const Knots& knots, const Voronoi& voronoi, const BasisOptions& options,
-                  const BasisTuning& tuning) {
-    const BasisBuilder builder(domain, knots, voronoi, tuning);
+Table local_basis(const PatchSpace& space, const BasisOptions& options, const BasisTuning& tuning) {
+    const BasisBuilder builder(space, tuning);
     const int cells = builder.cells();
     int threads = options.threads > 0 ? options.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     threads = std::max(1, std::min(threads, cells));
@@ -153,10 +152,10 @@ Table local_basis(const Domain& domain, const Knots& knots, const Voronoi& voron
     return builder.assemble(blocks);
 }
 
-Table local_basis(const Domain& domain, const Knots& knots, const Voronoi& voronoi, const BasisOptions& options) {
+Table local_basis(const PatchSpace& space, const BasisOptions& options) {
     BasisTuning tuning;
     tuning.patch.rings = options.rings;
-    return local_basis(domain, knots, voronoi, options, tuning);
+    return local_basis(space, options, tuning);
 }
 
 }  // namespace pvg

@@ -4,11 +4,9 @@
 // over the knots. cpu_reference/ACCURACY.md has what was measured.
 #pragma once
 
-#include "curves/domain.h"
 #include "pvg/table.h"
 #include "solve/border_fit.h"
-#include "solve/knots.h"
-#include "solve/voronoi.h"
+#include "solve/patch_space.h"
 
 namespace pvg {
 
@@ -25,9 +23,8 @@ struct BasisTuning {
 };
 
 /// The table of one domain: rows are its vertices, coefficients its knots then its sources.
-Table local_basis(const Domain& domain, const Knots& knots, const Voronoi& voronoi, const BasisOptions& options);
+Table local_basis(const PatchSpace& space, const BasisOptions& options);
 /// The same, tuned: tuning.patch.rings counts, options.rings does not.
-Table local_basis(const Domain& domain, const Knots& knots, const Voronoi& voronoi, const BasisOptions& options,
-                  const BasisTuning& tuning);
+Table local_basis(const PatchSpace& space, const BasisOptions& options, const BasisTuning& tuning);
 
 }  // namespace pvg

@@ -5,6 +5,7 @@
 
 #include "mesh/subdivide.h"
 #include "solve/basis.h"
+#include "solve/galerkin.h"
 #include "solve/normals.h"
 
 namespace pvg {
@@ -177,7 +178,10 @@ Build build(const Scene& scene, const MeshInput& mesh, const BuildOptions& optio
         Eigen::MatrixXd lambda = system.solve(domain);
         clock.enter("basis");
         Field field;
-        field.table = local_basis(domain, knots, voronoi, {.rings = scene.basis_rings, .threads = options.threads});
+        const PatchSpace space(domain, knots, voronoi);
+        field.table = local_basis(space, {.rings = scene.basis_rings, .threads = options.threads});
+        clock.enter("system");
+        minimise_energy(space, field.table, system, {}, lambda);
         field.coefficients = coefficients(lambda, domain);
         b.program.fields.push_back(std::move(field));
         b.domains.push_back({std::move(knots), std::move(voronoi), std::move(system), std::move(lambda)});

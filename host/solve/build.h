@@ -37,7 +37,7 @@ struct SolvedDomain {
     Knots knots;
     Voronoi voronoi;
     System system;
-    Eigen::MatrixXd lambda;  ///< knots x channels
+    Eigen::MatrixXd lambda;  ///< knots x channels: the control coefficients
 };
 
 /// Everything from the welded input to the evaluators' program.

@@ -12,31 +12,19 @@ namespace pvg {
 
 namespace {
 
-/// Near features and where sources act, knots may come this much nearer to each other than one input edge. On an irregular
-/// mesh the first vertices around a tip are between half an edge and one and a half away, and the whole field's accuracy hangs
-/// on knots there (a factor of two in the mean error). Rings and strips are often only one or two edges wide: with the first
-/// row a whole edge away, long cells reach from one border to the other across a field that bends (1.9 % off instead of 0.4).
-constexpr double fine_row = 0.5;
-
-/// Vertices of faces with a Laplacian.
-std::vector<char> source_vertices(const Domain& domain) {
-    std::vector<char> marked(domain.surface.vertex_count(), 0);
-    for (const SourceColumn& source : domain.sources)
-        for (const auto& [face, laplacian] : source.profile)
-            if (laplacian != 0)
-                for (int v : domain.surface.face(face)) marked[v] = 1;
-    return marked;
-}
+/// Near curves, knots may come this much nearer to each other than one input edge. Imprinting leaves the mesh's own vertices at
+/// any distance from a curve; with a whole edge as least size they would not be knots, and no smooth fit to the knots around
+/// tells them what a field that bends within an edge does there (cpu_reference/ACCURACY.md). As knots they also have the shortest
+/// rows.
+constexpr double least_edge_share = 0.25;
 
 std::vector<double> knot_sizes(const Domain& domain, const KnotOptions& options, const std::vector<double>& curve_distance,
                                const std::vector<double>& feature_distance) {
-    const std::vector<char> in_source = source_vertices(domain);
     std::vector<double> size(curve_distance.size());
     for (std::size_t v = 0; v < size.size(); ++v) {
-        const double to_feature = options.feature_grading * feature_distance[v];
-        const double edge = std::min(domain.edge_length[v], options.spacing);
-        const double least = in_source[v] ? fine_row * edge : std::clamp(to_feature, fine_row * edge, edge);
-        size[v] = std::max(least, std::min({options.spacing, options.grading * curve_distance[v], to_feature}));
+        const double least = least_edge_share * std::min(domain.edge_length[v], options.spacing);
+        const double wanted = std::min(options.grading * curve_distance[v], options.feature_grading * feature_distance[v]);
+        size[v] = std::clamp(wanted, least, options.spacing);
     }
     return size;
 }

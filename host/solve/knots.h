@@ -1,7 +1,7 @@
 // Knots: the Voronoi sites of a domain. Every vertex on a curve or on the domain's border is one; the rest is filled
 // by a greedy Poisson-disk sampling in geodesic distance with the sizing field
-//   h(x) = clamp(grading * distance to the nearest curve, input mesh's local edge length, spacing),
-// and near features (tips, crossings) and inside sources down to half that edge length.
+//   h(x) = clamp(grading * distance to the nearest curve, a quarter of the input mesh's local edge length, spacing),
+// and h <= feature_grading * distance to features (tips, crossings).
 #pragma once
 
 #include <vector>

@@ -197,17 +197,26 @@ Eigen::MatrixXd System::solve(const Domain& domain) const {
             coefficients.row(static_cast<Eigen::Index>(k)) = domain.sources[k].value;
         residual -= s.load * coefficients;
     }
-    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(s.unknowns, channels);
-    for (int j = 0; j < n; ++j)
+    lambda += apply_inverse(residual);
+    if (!lambda.allFinite())
+        throw Error(ErrorKind::bad_input, "system: the control coefficients are not finite");
+    return lambda;
+}
+
+Eigen::MatrixXd System::apply_inverse(const Eigen::MatrixXd& residual) const {
+    const State& s = *state_;
+    Eigen::MatrixXd change = Eigen::MatrixXd::Zero(residual.rows(), residual.cols());
+    if (s.unknowns == 0)
+        return change;
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(s.unknowns, residual.cols());
+    for (Eigen::Index j = 0; j < residual.rows(); ++j)
         if (s.unknown[j] != none)
             right.row(s.unknown[j]) += residual.row(j);
     const Eigen::MatrixXd solution = s.factor.solve(right);
-    if (s.factor.info() != Eigen::Success || !solution.allFinite())
-        throw Error(ErrorKind::bad_input, "system: the control coefficients are not finite");
-    for (int j = 0; j < n; ++j)
+    for (Eigen::Index j = 0; j < residual.rows(); ++j)
         if (s.unknown[j] != none)
-            lambda.row(j) += solution.row(s.unknown[j]);
-    return lambda;
+            change.row(j) = solution.row(s.unknown[j]);
+    return change;
 }
 
 }  // namespace pvg

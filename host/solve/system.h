@@ -25,6 +25,8 @@ public:
     int unknowns() const;
     /// lambda (N x C) from the values that the domain holds NOW (Dirichlet, jumps, source values): one back-substitution.
     Eigen::MatrixXd solve(const Domain& domain) const;
+    /// E K^-1 E^T r (N x C), E from the unknowns to all knots: 0 at fixed knots, equal at the two copies of a sharp Poisson curve.
+    Eigen::MatrixXd apply_inverse(const Eigen::MatrixXd& residual) const;
 
 private:
     struct State;

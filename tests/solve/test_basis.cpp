@@ -8,6 +8,7 @@
 #include "fixtures/domains.h"
 #include "solve/basis.h"
 #include "solve/basis_problems.h"
+#include "solve/galerkin.h"
 #include "solve/system.h"
 
 namespace pvg {
@@ -19,9 +20,18 @@ struct Built {
         : domain(std::move(domain_)),
           knots(place_knots(domain, {.spacing = spacing * domain.surface.diagonal()})),
           voronoi(geodesic_voronoi(domain, knots)),
-          table(local_basis(domain, knots, voronoi, {.threads = 2})) {}
+          space(domain, knots, voronoi),
+          table(local_basis(space, {.threads = 2})) {}
+    Built(const Built&) = delete;  // the space refers to its siblings
 
     int knot_count() const { return static_cast<int>(knots.vertex.size()); }
+    /// As a user gets it.
+    Eigen::MatrixXd lambda() const {
+        const System system(domain, knots, voronoi);
+        Eigen::MatrixXd result = system.solve(domain);
+        minimise_energy(space, table, system, {}, result);
+        return result;
+    }
     /// Knots' values of a function of the vertex, sources at their own.
     Eigen::VectorXd coefficients(const std::function<double(int)>& value) const {
         Eigen::VectorXd result(knot_count() + domain.sources.size());
@@ -33,6 +43,7 @@ struct Built {
     Domain domain;
     Knots knots;
     Voronoi voronoi;
+    PatchSpace space;
     Table table;
 };
 
@@ -130,8 +141,8 @@ TEST(BasisLaws, SupportEndsAtTheSecondRing) {
     const auto ring = [&](const std::set<int>& cells) {
         std::set<int> more = cells;
         for (int c : cells)
-            more.insert(built.voronoi.neighbours.begin() + built.voronoi.neighbour_first[c],
-                        built.voronoi.neighbours.begin() + built.voronoi.neighbour_first[c + 1]);
+            more.insert(built.space.neighbours.begin() + built.space.neighbour_first[c],
+                        built.space.neighbours.begin() + built.space.neighbour_first[c + 1]);
         return more;
     };
     for (std::uint32_t c = 0; c < t.cell_count; ++c) {
@@ -150,7 +161,7 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 TEST(BasisLaws, ThreadsChangeNoByte) {
     const Built& built = three_curves();
     for (int threads : {1, 3}) {
-        const Table other = local_basis(built.domain, built.knots, built.voronoi, {.threads = threads});
+        const Table other = local_basis(built.space, {.threads = threads});
         EXPECT_TRUE(same_bytes(built.table.weights, other.weights));
         EXPECT_TRUE(same_bytes(built.table.indices, other.indices));
         EXPECT_TRUE(same_bytes(built.table.cell_first_weight, other.cell_first_weight));
@@ -164,7 +175,7 @@ TEST(BasisLaws, RotationAndScaleChangeNothing) {
     moved.surface = fixtures::scaled(fixtures::rotated(built.domain.surface, 1.1), 37);
     for (SourceColumn& source : moved.sources)
         for (auto& [face, laplacian] : source.profile) laplacian /= 37.0 * 37.0;
-    const Table table = local_basis(moved, built.knots, built.voronoi, {.threads = 2});
+    const Table table = local_basis(PatchSpace(moved, built.knots, built.voronoi), {.threads = 2});
     fixtures::Random random(4);
     const Eigen::VectorXd coefficients = built.coefficients([&](int) { return random.real(-1, 1); });
     // Rough coefficients see every weight; float rounding times their number.
@@ -174,7 +185,7 @@ TEST(BasisLaws, RotationAndScaleChangeNothing) {
 
 TEST(BasisLaws, SolutionsStayWithinTheirDirichletValues) {
     const Built built(fixtures::three_curves(80, false));
-    const Eigen::MatrixXd lambda = System(built.domain, built.knots, built.voronoi).solve(built.domain);
+    const Eigen::MatrixXd lambda = built.lambda();
     const Eigen::VectorXd u = fixtures::evaluate(built.table, lambda.col(0));
     double low = 1e9, high = -1e9;
     for (int v = 0; v < u.size(); ++v)
@@ -191,11 +202,10 @@ struct Bars {
     double mean, max, h1, entries;
 };
 
-/// With lambda from the system: what a user sees. With lambda from the truth: the basis alone.
-void expect_accurate(const Built& built, const Bars& solved, const Bars& basis_alone) {
-    const Eigen::SparseMatrix<double> S = fixtures::fem_stiffness(built.domain.surface);
+/// With lambda as a user gets it, and with lambda from the truth: the basis alone.
+void expect_accurate(const Built& built, const Bars& solved, const Bars& basis_alone, const Eigen::SparseMatrix<double>& S) {
     const Eigen::VectorXd truth = fixtures::fem_solution(built.domain, S);
-    const Eigen::MatrixXd lambda = System(built.domain, built.knots, built.voronoi).solve(built.domain);
+    const Eigen::MatrixXd lambda = built.lambda();
     for (const bool exact : {false, true}) {
         const Bars& bars = exact ? basis_alone : solved;
         const auto value = [&](int v) { return exact ? truth[v] : lambda(built.knots.knot_of_vertex[v], 0); };
@@ -204,35 +214,38 @@ void expect_accurate(const Built& built, const Bars& solved, const Bars& basis_a
         EXPECT_LT(error.mean, bars.mean);
         EXPECT_LT(error.max, bars.max) << "at " << built.domain.surface.point(error.worst).transpose();
         EXPECT_LT(error.h1, bars.h1);
-        std::printf("%8d vertices %6d knots  lambda %-11s mean %.4f  max %.3f  H1 %.2f  entries %.1f\n",
-                    built.domain.surface.vertex_count(), built.knot_count(), exact ? "exact" : "from system", error.mean,
-                    error.max, error.h1, fixtures::entries_per_vertex(built.domain, built.table));
+        std::printf("%8d vertices %6d knots  lambda %-6s mean %.4f  max %.3f  H1 %.2f  entries %.1f\n",
+                    built.domain.surface.vertex_count(), built.knot_count(), exact ? "exact" : "solved", error.mean, error.max,
+                    error.h1, fixtures::entries_per_vertex(built.domain, built.table));
     }
     EXPECT_LE(fixtures::entries_per_vertex(built.domain, built.table), solved.entries);
 }
 
-// Bars: the targets of cpu_reference/ACCURACY.md for a solved field. For the basis alone about twice what was measured, so that a
-// change for the worse shows.
+void expect_accurate(const Built& built, const Bars& solved, const Bars& basis_alone) {
+    expect_accurate(built, solved, basis_alone, fixtures::fem_stiffness(built.domain.surface));
+}
+
+// Bars: two to four times what was measured, so that a change for the worse shows. The method's targets are 0.05, 0.39, 2, 24.
 TEST(BasisAccuracy, ThreeCurvesAndABalancedRegion) {
-    expect_accurate(Built(fixtures::three_curves(150)), {0.05, 0.39, 2, 24}, {0.001, 0.08, 0.25, 24});
+    expect_accurate(Built(fixtures::three_curves(150)), {0.003, 0.04, 0.3, 24}, {0.0003, 0.04, 0.15, 24});
 }
 TEST(BasisAccuracy, CrossingsJumpAndChannels) {
-    expect_accurate(Built(fixtures::crossings_and_jump(120)), {0.05, 0.39, 2, 24}, {0.003, 0.6, 1.5, 24});
+    expect_accurate(Built(fixtures::crossings_and_jump(120)), {0.002, 0.06, 0.2, 24}, {0.0003, 0.1, 0.2, 24});
 }
 TEST(BasisAccuracy, SphereBand) {
-    expect_accurate(Built(fixtures::sphere_band(20000).domain), {0.05, 0.39, 2, 24}, {0.001, 0.1, 0.2, 24});
+    expect_accurate(Built(fixtures::sphere_band(20000).domain), {0.001, 0.06, 0.12, 24}, {0.0003, 0.06, 0.12, 24});
 }
 
 TEST(BasisAccuracy, DiscWithASource) {
     // u = 1 - r^2, the source everywhere: Green's columns carry it alone.
-    expect_accurate(Built(fixtures::disk_domain(60)), {0.05, 0.39, 2, 24}, {0.002, 0.15, 0.4, 24});
+    expect_accurate(Built(fixtures::disk_domain(60)), {0.001, 0.01, 0.06, 24}, {0.001, 0.01, 0.06, 24});
 }
 
 TEST(BasisAccuracy, TrianglesThatAreNotDelaunay) {
-    // Random diagonals with angles up to 150 degrees: the library solves on the intrinsic Delaunay triangulation of the same
-    // vertices, the truth on the triangles as they are. The basis itself must not suffer; the solved field differs by what the
-    // two operators differ by (measured 0.02, 1.2, 4).
-    expect_accurate(Built(fixtures::three_curves(100, true, false)), {0.1, 2.4, 8, 24}, {0.005, 1.5, 2.2, 24});
+    // Random diagonals with angles up to 150 degrees. The truth is that of the intrinsic Delaunay triangulation: on the obtuse
+    // triangles as they are, linear elements themselves are 0.03 / 1.2 / 4.4 % away from it.
+    const Built built(fixtures::three_curves(100, true, false));
+    expect_accurate(built, {0.005, 0.1, 0.5, 24}, {0.0005, 0.1, 0.3, 24}, built.space.S);
 }
 
 TEST(Basis, TinyMeshes) {
@@ -249,7 +262,7 @@ TEST(Basis, TinyMeshes) {
 
 TEST(Basis, OneRingWorksToo) {
     const Built& built = three_curves();
-    const Table table = local_basis(built.domain, built.knots, built.voronoi, {.rings = 1, .threads = 2});
+    const Table table = local_basis(built.space, {.rings = 1, .threads = 2});
     EXPECT_TRUE(validate(table).ok());
     EXPECT_LT(table.indices.size(), built.table.indices.size());
     const Eigen::SparseMatrix<double> S = fixtures::fem_stiffness(built.domain.surface);
@@ -257,7 +270,7 @@ TEST(Basis, OneRingWorksToo) {
     const auto error =
         fixtures::compare(built.domain, S, truth, fixtures::evaluate(table, built.coefficients([&](int v) { return truth[v]; })));
     EXPECT_LT(error.mean, 0.02);
-    EXPECT_LT(error.max, 1);
+    EXPECT_LT(error.max, 0.39);
 }
 
 }  // namespace

@@ -1,0 +1,97 @@
+#include "solve/galerkin.h"
+
+namespace pvg {
+namespace {
+
+/// One row a vertex or coefficient, one column a channel.
+using Values = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Psi and its transpose, as they stand in the table; all channels at once.
+class TableProduct {
+public:
+    TableProduct(const Table& table, Eigen::Index channels) : table_(table), channels_(channels) {}
+
+    /// By vertex: V x C.
+    Values values(const Values& coefficients) const {
+        Values u = Values::Zero(table_.row_count, channels_);
+        for_each_weight([&](std::uint32_t vertex, std::uint32_t coefficient, double weight) {
+            for (Eigen::Index c = 0; c < channels_; ++c) u(vertex, c) += weight * coefficients(coefficient, c);
+        });
+        return u;
+    }
+    /// What each coefficient feels of forces on the vertices.
+    Values gather(const Values& forces) const {
+        Values sum = Values::Zero(table_.coefficient_count, channels_);
+        for_each_weight([&](std::uint32_t vertex, std::uint32_t coefficient, double weight) {
+            for (Eigen::Index c = 0; c < channels_; ++c) sum(coefficient, c) += weight * forces(vertex, c);
+        });
+        return sum;
+    }
+
+private:
+    template <typename Work>
+    void for_each_weight(const Work& work) const {
+        for (std::uint32_t cell = 0; cell < table_.cell_count; ++cell) {
+            const std::uint32_t list = table_.cell_first_index[cell], length = table_.cell_first_index[cell + 1] - list;
+            std::size_t block = table_.cell_first_weight[cell];
+            for (std::uint32_t row = table_.cell_first_row[cell]; row < table_.cell_first_row[cell + 1]; ++row, block += length)
+                for (std::uint32_t k = 0; k < length; ++k)
+                    if (const float weight = table_.weights[block + k]; weight != 0)
+                        work(table_.row_vertex[row], table_.indices[list + k], double{weight});
+        }
+    }
+
+    const Table& table_;
+    Eigen::Index channels_;
+};
+
+/// -(S u + load), by vertex.
+Values unbalanced_forces(const PatchSpace& space, const Values& u) {
+    Values forces = -(space.S * u);
+    for (int v = 0; v < space.domain.surface.vertex_count(); ++v)
+        for (int i = space.load_first[v]; i < space.load_first[v + 1]; ++i)
+            forces.row(v) -= space.loads[i].second * space.domain.sources[space.loads[i].first].value;
+    return forces;
+}
+
+Eigen::RowVectorXd dot(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return (a.array() * b.array()).colwise().sum(); }
+
+}  // namespace
+
+int minimise_energy(const PatchSpace& space, const Table& table, const System& system, const GalerkinOptions& options,
+                    Eigen::MatrixXd& lambda) {
+    const Eigen::Index knots = lambda.rows(), channels = lambda.cols();
+    if (system.unknowns() == 0)
+        return 0;
+    const TableProduct psi(table, channels);
+    Values coefficients = Values::Zero(table.coefficient_count, channels);
+    coefficients.topRows(knots) = lambda;
+    for (std::size_t s = 0; s < space.domain.sources.size(); ++s)
+        coefficients.row(knots + static_cast<Eigen::Index>(s)) = space.domain.sources[s].value;
+
+    Eigen::MatrixXd residual = psi.gather(unbalanced_forces(space, psi.values(coefficients))).topRows(knots);
+    Eigen::MatrixXd direction = system.apply_inverse(residual);
+    Eigen::RowVectorXd size = dot(residual, direction);
+    const Eigen::RowVectorXd enough = size * (options.reduction * options.reduction);
+    coefficients.setZero();
+    int steps = 0;
+    for (; steps < options.max_steps && (size.array() > enough.array()).any(); ++steps) {
+        coefficients.topRows(knots) = direction;
+        const Eigen::MatrixXd change = psi.gather(space.S * psi.values(coefficients)).topRows(knots);
+        const Eigen::RowVectorXd curvature = dot(direction, change);
+        for (Eigen::Index c = 0; c < channels; ++c) {
+            if (!(size[c] > enough[c]) || !(curvature[c] > 0))
+                continue;
+            lambda.col(c) += size[c] / curvature[c] * direction.col(c);
+            residual.col(c) -= size[c] / curvature[c] * change.col(c);
+        }
+        const Eigen::MatrixXd preconditioned = system.apply_inverse(residual);
+        const Eigen::RowVectorXd next = dot(residual, preconditioned);
+        for (Eigen::Index c = 0; c < channels; ++c)
+            direction.col(c) = preconditioned.col(c) + (size[c] > 0 ? next[c] / size[c] : 0) * direction.col(c);
+        size = next;
+    }
+    return steps;
+}
+
+}  // namespace pvg

@@ -1,0 +1,28 @@
+// Energy-optimal control coefficients. The cell system K lambda = load balances each cell with two-point fluxes; the basis
+// knows the field between the knots better than that. Of all fields u = Psi lambda + Beta f that a table can show, the one
+// nearest to the finite-element solution in the energy norm leaves forces orthogonal to every psi (Galerkin's condition):
+//   Psi^T (S u + load) = 0.
+// It is reached from the cell system's lambda by conjugate gradients (M. R. Hestenes and E. Stiefel, 1952) with K, factored
+// already, as preconditioner: the two operators differ by what two-point fluxes neglect, so a few steps gain nearly all
+// (cpu_reference/ACCURACY.md).
+#pragma once
+
+#include <Eigen/Core>
+
+#include "pvg/table.h"
+#include "solve/patch_space.h"
+#include "solve/system.h"
+
+namespace pvg {
+
+struct GalerkinOptions {
+    int max_steps = 12;
+    double reduction = 1e-5;  ///< a channel rests when its residual, in the norm of K^-1, has fallen by this factor
+};
+
+/// Improves lambda (N x C) in place, for the values that the domain holds now; fixed knots and jumps stay. Returns the steps
+/// taken. Deterministic. Requires the space, table (over the space's knots, then its sources) and system of one domain.
+int minimise_energy(const PatchSpace& space, const Table& table, const System& system, const GalerkinOptions& options,
+                    Eigen::MatrixXd& lambda);
+
+}  // namespace pvg
