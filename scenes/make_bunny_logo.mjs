@@ -1,5 +1,6 @@
 // Lays a rosette out on the bunny's thigh and writes scenes/bunny.pvg.json.
-//   node scenes/make_bunny_logo.mjs NODE_MODULES [OUT.pvg.json]
+//   node scenes/make_bunny_logo.mjs NODE_MODULES [OUT.pvg.json [X Y RADIUS]]
+// X, Y, RADIUS: where the badge is, seen from +z, as fractions of the diagonal.
 // The layout is drawn in polar coordinates (radius 1: the badge's rim). Each of its points is carried to the surface by rays along the thigh's mean
 // normal, stepping outwards until the arc length on the surface is the wanted radius, so that shapes keep their size on the curved thigh.
 import { createRequire } from 'node:module';
@@ -8,15 +9,15 @@ import { dirname, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
 const here = dirname(fileURLToPath(import.meta.url));
-const [modules, out = resolve(here, 'bunny.pvg.json')] = process.argv.slice(2);
-if (!modules) {
-    console.error('usage: node make_bunny_logo.mjs NODE_MODULES [OUT.pvg.json]');
+const [modules, out = resolve(here, 'bunny.pvg.json'), ...where] = process.argv.slice(2);
+if (!modules || (where.length !== 0 && where.length !== 3) || !where.every((number) => Number.isFinite(Number(number)))) {
+    console.error('usage: node make_bunny_logo.mjs NODE_MODULES [OUT.pvg.json [X Y RADIUS]]');
     process.exit(2);
 }
 const bunny = createRequire(import.meta.url)(resolve(modules, 'bunny'));
 
-// Where the badge is: seen from +z, as fractions of the diagonal.
-const place = { x: 0.08, y: 0.19, radius: 0.165 };
+const [x = 0.08, y = 0.19, radius = 0.165] = where.map(Number);
+const place = { x, y, radius };
 const smallest_gap = 0.012; // between any two curves, fraction of the diagonal
 
 const add = (a, b) => a.map((v, k) => v + b[k]);
@@ -206,7 +207,7 @@ if (narrowest < smallest_gap) process.exit(1);
 
 const head = {
     pvg: 1,
-    mesh: { file: 'bunny.glb', max_edge: 0.009 },
+    mesh: { file: 'bunny.glb', max_edge: 0.01 },
     length_unit: 'bbox',
     color_space: 'linear',
     layers: [{ name: 'rosette', primitives }],

@@ -1,6 +1,8 @@
 // The command line as users' scripts rely on it: verbs, exit codes, messages, what goes where.
 #include "end_to_end/command.h"
 
+#include <cmath>
+
 namespace pvg::test {
 namespace {
 
@@ -202,6 +204,36 @@ TEST_F(Command, InfoAndDevices) {
     EXPECT_EQ(described["primitives"]["diffusion_curve"], 1);
     EXPECT_EQ(pvg("info nothing.glb").exit, 3);
     EXPECT_EQ(pvg("devices").exit, 0);
+}
+
+TEST_F(Command, WallsCloseTheCliffs) {
+    // A circle with two heights on a sphere: cap and rest stand apart, joined by walls. No border, one piece, a sphere still.
+    ASSERT_EQ(pvg("make sphere -o sphere.glb --vertices 3000").exit, 0);
+    json document = scene();
+    document["mesh"]["file"] = "sphere.glb";
+    json& circle = document["layers"][0]["primitives"][0];
+    circle["path"] = {{"type", "circle"}, {"center", {0, 0, 1}}, {"radius", 0.15}, {"snap", "any"}};
+    circle["left"] = {{"height", 0.02}};
+    circle["right"] = {{"height", -0.01}};
+    write_scene(document);
+    const auto topology = [&](const std::string& flags) {
+        const Outcome decorated = pvg("decorate s.pvg.json -o out.glb --device cpu" + flags);
+        EXPECT_EQ(decorated.exit, 0) << decorated.err;
+        return json::parse(pvg("info out.glb --json").out);
+    };
+    const json whole = json::parse(pvg("info sphere.glb --json").out), walled = topology(""), flat = topology(" --no-displace");
+    for (const json* info : {&whole, &walled, &flat}) {
+        EXPECT_EQ((*info)["welded"]["border_edges"], 0);
+        EXPECT_EQ((*info)["welded"]["non_manifold_edges"], 0);
+        EXPECT_EQ((*info)["components"], 1);
+        EXPECT_EQ((*info)["euler_characteristic"], 2);
+    }
+    // Cap and rest are parts of spheres of other radii, the wall the piece of a cone between them (without it: 0.946).
+    const double diagonal = 2 * std::sqrt(3.0), angle = 0.15 * diagonal, up = 1 + 0.02 * diagonal, down = 1 - 0.01 * diagonal;
+    const double cap = (1 - std::cos(angle)) / 2;
+    const double expected = cap * up * up + (1 - cap) * down * down + std::sin(angle) * (up * up - down * down) / 4;
+    EXPECT_NEAR(walled["area"].get<double>() / whole["area"].get<double>(), expected, 0.005);
+    EXPECT_NEAR(flat["area"].get<double>() / whole["area"].get<double>(), 1, 1e-5);
 }
 
 TEST_F(Command, MakeGivesEveryShape) {

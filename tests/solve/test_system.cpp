@@ -128,7 +128,7 @@ TEST(System, SlitSquareAgainstFiniteElements) {
         EXPECT_LT(error.mean, last);
         EXPECT_LT(error.mean, 0.03);
         EXPECT_LT(error.max, 0.39);         // 1 / 255
-        EXPECT_LT(error.max_at_tips, 1.5);  // values jump within one edge there, and the two discretisations with them
+        EXPECT_LT(error.max_at_tips, 1.5);  // two-point fluxes beside a jump; Galerkin.TipsAndCrossings has what becomes of it
         last = error.mean;
     }
 }
