@@ -101,10 +101,10 @@ TEST_P(Placements, AreAsAccurate) {
 INSTANTIATE_TEST_SUITE_P(Bunny, Placements,
                          testing::Values("-0.05 0.19 0.165", "0.06 0.19 0.165", "0.075 0.19 0.165", "0.085 0.19 0.17",
                                          "0.1 0.18 0.165"),
-                         [](const auto& info) { return std::to_string(info.index); });
+                         [](const auto& placement) { return std::to_string(placement.index); });
 
 INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::Values("box", "flag", "two_regions", "bunny"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& scene) { return std::string(scene.param); });
 
 }  // namespace
 }  // namespace pvg::test
