@@ -56,6 +56,16 @@ void FaceCones::lay_out(int face) {
     for (int k : {1, 2}) turn_[k] = turn_[k - 1] + std::numbers::pi - std::atan2(frame_[k].apex_y, frame_[k].apex_x);
 }
 
+bool FaceCones::reached(int face) const {
+    for (int v : surface_.face(face))
+        if (std::isfinite(field_.distance[v]))
+            return true;
+    if (field_.window_first[3 * face] != field_.window_first[3 * face + 3])
+        return true;
+    const auto inner = std::lower_bound(inner_.begin(), inner_.end(), std::pair(face, 0));
+    return inner != inner_.end() && inner->first == face;
+}
+
 const std::vector<Cone>& FaceCones::at(int face) {
     if (face == face_)
         return cones_;

@@ -38,6 +38,8 @@ public:
     /// Refers to its arguments; needs field.windows (Error(bad_input) without).
     FaceCones(const Surface& surface, const GeodesicField& field, std::span<const GeodesicSource> sources);
 
+    /// Whether anything reaches the face; where nothing does, at(face) is empty.
+    bool reached(int face) const;
     /// The cones of a face.
     const std::vector<Cone>& at(int face);
     /// The face laid out: its corners.

@@ -114,7 +114,7 @@ private:
             return;
         }
         int h = 3 * source.at.face;
-        Eigen::Vector2d at = to_frame(metric_.frame[h], h, source.at.bary);
+        Eigen::Vector2d at = to_frame(metric_.frame(h), h, source.at.bary);
         double angle = 0;  // of the halfedge, measured as the log map's directions are
         for (int k = 0; k < 3; ++k) {
             start_corner(h, at, angle, index);
@@ -126,7 +126,7 @@ private:
         if (twin == none)
             return;
         while (h != place.halfedge) advance(h, at, angle);
-        at = {metric_.frame[h].length - at.x(), 0};
+        at = {metric_.frame(h).length - at.x(), 0};
         angle += pi;
         h = twin;
         for (int k = 0; k < 3; ++k) {
@@ -138,14 +138,14 @@ private:
     }
 
     /// From the frame of a halfedge to that of the next one in its face.
-    void advance(int& h, Eigen::Vector2d& at, double& angle) const {
-        const HalfedgeFrame& frame = metric_.frame[h];
+    void advance(int& h, Eigen::Vector2d& at, double& angle) {
+        const HalfedgeFrame& frame = metric_.frame(h);
         const int next = Surface::next(h);
-        const double inverse = metric_.frame[next].inverse;
+        const double inverse = metric_.frame(next).inverse;
         const Eigen::Vector2d axis((frame.apex_x - frame.length) * inverse, frame.apex_y * inverse),
             d(at.x() - frame.length, at.y());
         at = {d.dot(axis), axis.x() * d.y() - axis.y() * d.x()};
-        angle += pi - metric_.corner_angle[next];
+        angle += pi - metric_.corner_angle(next);
         h = next;
     }
 
@@ -154,12 +154,12 @@ private:
         const double d = sources_[index].distance + at.norm();
         if (!better(v, d, index))
             return;
-        reach(v, d, index, none, angle + std::atan2(-at.y(), -at.x()), metric_.fan_angle[h] + std::atan2(at.y(), at.x()), 2 * pi,
+        reach(v, d, index, none, angle + std::atan2(-at.y(), -at.x()), metric_.fan_angle(h) + std::atan2(at.y(), at.x()), 2 * pi,
               true);
     }
 
     void start_edge(int h, const Eigen::Vector2d& at, double angle, int index) {
-        const double length = metric_.frame[h].length;
+        const double length = metric_.frame(h).length;
         push(surface_.twin(h), 0, length, length - at.x(), -at.y(), sources_[index].distance, angle - pi, index, none, 0);
     }
 
@@ -169,7 +169,7 @@ private:
         return d < field_.distance[v] * (1 - tie) || (index < field_.root[v] && d <= field_.distance[v] * (1 + tie));
     }
 
-    bool can_bend(int v) const { return metric_.angle_sum[v] > (surface_.is_border_vertex(v) ? pi : 2 * pi) + saddle_excess; }
+    bool can_bend(int v) { return metric_.angle_sum(v) > (surface_.is_border_vertex(v) ? pi : 2 * pi) + saddle_excess; }
 
     void reach(int v, double d, int index, int via, double direction, double arrival, double turn, bool closed) {
         const bool nearer = d < field_.distance[v];
@@ -178,7 +178,7 @@ private:
         field_.root[v] = index;
         field_.via[v] = via;
         field_.direction[v] = reduced(direction, turn, closed);
-        field_.arrival[v] = reduced(arrival, metric_.angle_sum[v], !surface_.is_border_vertex(v));
+        field_.arrival[v] = reduced(arrival, metric_.angle_sum(v), !surface_.is_border_vertex(v));
         field_.is_source[v] = 0;
         if (can_bend(v)) {
             field_.is_pseudo_source[v] = 1;
@@ -202,7 +202,7 @@ private:
         if (at == none)
             reach(v, d, index, via, direction, arrival, 2 * pi, true);
         else
-            reach(v, d, index, via, direction, arrival, metric_.angle_sum[at], !surface_.is_border_vertex(at));
+            reach(v, d, index, via, direction, arrival, metric_.angle_sum(at), !surface_.is_border_vertex(at));
     }
 
     /// Sends bundles out of a source vertex, or into the shadow of a pseudo-source.
@@ -211,27 +211,27 @@ private:
             return;  // reached on a shorter way since
         const int first = surface_.outgoing(v), index = field_.root[v];
         const bool whole = field_.is_source[v] != 0, border = surface_.is_border_vertex(v);
-        const double sum = metric_.angle_sum[v];
+        const double sum = metric_.angle_sum(v);
         const int via = whole ? none : v;
         int h = first;
         do {
             const int across = Surface::next(h), back = Surface::prev(h);
-            expand_edge(v, surface_.origin(across), metric_.frame[h].length, metric_.fan_angle[h],
-                        metric_.fan_angle[across] + metric_.corner_angle[across]);
+            expand_edge(v, surface_.origin(across), metric_.frame(h).length, metric_.fan_angle(h),
+                        metric_.fan_angle(across) + metric_.corner_angle(across));
             const int twin = surface_.twin(across);
-            const double corner = metric_.corner_angle[h];
+            const double corner = metric_.corner_angle(h);
             if (twin != none) {
                 if (whole) {
                     push_wedge(h, twin, 0, corner, key, index, via);
                 } else if (border) {
-                    const double in = field_.arrival[v], low = metric_.fan_angle[h];
+                    const double in = field_.arrival[v], low = metric_.fan_angle(h);
                     const double right = in - pi + wedge_slack, left = in + pi - wedge_slack;
                     if (low < right)
                         push_wedge(h, twin, 0, std::min(corner, right - low), key, index, via);
                     if (low + corner > left)
                         push_wedge(h, twin, std::max(0.0, left - low), corner, key, index, via);
                 } else {
-                    double low = metric_.fan_angle[h] - field_.arrival[v];
+                    double low = metric_.fan_angle(h) - field_.arrival[v];
                     if (low < 0)
                         low += sum;
                     const double right = std::max(low, pi - wedge_slack), left = std::min(low + corner, sum - pi + wedge_slack);
@@ -241,8 +241,8 @@ private:
             }
             const int following = surface_.twin(back);
             if (following == none)
-                expand_edge(v, surface_.origin(back), metric_.frame[back].length, metric_.fan_angle[h] + corner,
-                            metric_.fan_angle[back]);
+                expand_edge(v, surface_.origin(back), metric_.frame(back).length, metric_.fan_angle(h) + corner,
+                            metric_.fan_angle(back));
             h = following;
         } while (h != none && h != first);
     }
@@ -253,7 +253,7 @@ private:
         if (!better(to, d, index))
             return;
         if (field_.is_source[v])
-            reach(to, d, index, none, direction, arrival, metric_.angle_sum[v], !surface_.is_border_vertex(v));
+            reach(to, d, index, none, direction, arrival, metric_.angle_sum(v), !surface_.is_border_vertex(v));
         else
             reach(to, d, index, v, field_.direction[v], arrival, infinity, false);
     }
@@ -261,9 +261,9 @@ private:
     /// Directions [from, to] out of the corner of halfedge h, as a window on the opposite edge's other side.
     void push_wedge(int h, int twin, double from, double to, double offset, int index, int via) {
         const int across = Surface::next(h);
-        const HalfedgeFrame& frame = metric_.frame[across];
+        const HalfedgeFrame& frame = metric_.frame(across);
         const double x = frame.length - frame.apex_x, y = -frame.apex_y;
-        const double right_angle = metric_.corner_angle[across];  // of the ray to the near end of the edge, in the window's frame
+        const double right_angle = metric_.corner_angle(across);  // of the ray to the near end of the edge, in the window's frame
         double begin = 0, end = frame.length;
         const auto crossing = [&](double angle) {
             const double s = std::sin(right_angle + angle);
@@ -272,9 +272,9 @@ private:
         };
         if (from > 0)
             end = crossing(from);
-        if (to < metric_.corner_angle[h])
+        if (to < metric_.corner_angle(h))
             begin = crossing(to);
-        const double rotation = via == none ? metric_.fan_angle[h] - right_angle : field_.direction[surface_.origin(h)];
+        const double rotation = via == none ? metric_.fan_angle(h) - right_angle : field_.direction[surface_.origin(h)];
         push(twin, begin, end, x, y, offset, rotation, index, via, 0);
     }
 
@@ -305,21 +305,21 @@ private:
     }
 
     /// Whether no path through this interval can be short enough for the one target: space is never longer than the surface.
-    bool astray(double key, int h, double begin, double end) const {
+    bool astray(double key, int h, double begin, double end) {
         if (!options_.toward)
             return false;
         const Point &from = surface_.point(surface_.origin(h)), &to = surface_.point(surface_.target(h));
-        const Point along = (to - from) * metric_.frame[h].inverse;
+        const Point along = (to - from) * metric_.frame(h).inverse;
         const double nearest = std::clamp((*options_.toward - from).dot(along), begin, end);
         return key + (from + nearest * along - *options_.toward).norm() > options_.max_distance;
     }
 
     /// Xin and Wang's filter: some vertex of the face that the window left reaches all of its interval on a way that is not
     /// longer.
-    bool dominated(const Window& w) const {
+    bool dominated(const Window& w) {
         if (w.via != none && w.offset > field_.distance[w.via])
             return true;
-        const HalfedgeFrame& frame = metric_.frame[w.halfedge];
+        const HalfedgeFrame& frame = metric_.frame(w.halfedge);
         const double to_begin = w.offset + std::sqrt((w.begin - w.x) * (w.begin - w.x) + w.y * w.y);
         const double to_end = w.offset + std::sqrt((w.end - w.x) * (w.end - w.x) + w.y * w.y);
         constexpr double margin = 1 - filter_margin;
@@ -330,7 +330,7 @@ private:
         if (w.side == 0)
             return false;
         const int behind = surface_.twin(w.halfedge);
-        const HalfedgeFrame& other = metric_.frame[behind];
+        const HalfedgeFrame& other = metric_.frame(behind);
         const double far = w.side > 0 ? w.end : w.begin, dx = far - (frame.length - other.apex_x);
         return field_.distance[surface_.origin(Surface::prev(behind))] + std::sqrt(dx * dx + other.apex_y * other.apex_y) <
                (w.side > 0 ? to_end : to_begin) * margin;
@@ -338,7 +338,7 @@ private:
 
     void propagate(const Window& w) {
         const int h = w.halfedge, next = Surface::next(h), prev = Surface::prev(h);
-        const HalfedgeFrame& frame = metric_.frame[h];
+        const HalfedgeFrame& frame = metric_.frame(h);
         const double ax = frame.apex_x - w.x, ay = frame.apex_y - w.y;
         // Positive where the apex lies left of the bundle's left (right) ray.
         const double left = (w.begin - w.x) * ay + w.y * ax;
@@ -367,20 +367,20 @@ private:
                 reach_apex(w, w.offset + std::sqrt(apex));
         }
         if (to_right && surface_.twin(next) != none) {
-            const HalfedgeFrame& edge = metric_.frame[next];
+            const HalfedgeFrame& edge = metric_.frame(next);
             const double begin = left > 0 ? edge.length * left / (left + w.y * (w.begin - frame.length)) : 0;
             const double end = edge.length * right / (right + w.y * (w.end - frame.length));
             const double cx = (frame.length - frame.apex_x) * edge.inverse, cy = -frame.apex_y * edge.inverse;
             push(surface_.twin(next), begin, std::min(end, edge.length), -ax * cx - ay * cy, cy * ax - cx * ay, w.offset,
-                 w.via == none ? w.rotation - metric_.corner_angle[next] : w.rotation, w.root, w.via, +1);
+                 w.via == none ? w.rotation - metric_.corner_angle(next) : w.rotation, w.root, w.via, +1);
         }
         if (to_left && surface_.twin(prev) != none) {
-            const HalfedgeFrame& edge = metric_.frame[prev];
+            const HalfedgeFrame& edge = metric_.frame(prev);
             const double begin = edge.length * (w.y * w.begin) / (w.y * w.begin + left);
             const double end = right < 0 ? edge.length * (w.y * w.end) / (w.y * w.end + right) : edge.length;
             const double cx = frame.apex_x * edge.inverse, cy = frame.apex_y * edge.inverse;
             push(surface_.twin(prev), std::max(begin, 0.0), end, w.x * cx + w.y * cy, cx * w.y - cy * w.x, w.offset,
-                 w.via == none ? w.rotation + metric_.corner_angle[h] : w.rotation, w.root, w.via, -1);
+                 w.via == none ? w.rotation + metric_.corner_angle(h) : w.rotation, w.root, w.via, -1);
         }
     }
 
@@ -388,10 +388,10 @@ private:
         const int prev = Surface::prev(w.halfedge), c = surface_.origin(prev);
         if (!better(c, d, w.root))
             return;
-        const HalfedgeFrame& frame = metric_.frame[w.halfedge];
+        const HalfedgeFrame& frame = metric_.frame(w.halfedge);
         const double bx = w.x - frame.apex_x, by = w.y - frame.apex_y;  // back from the apex
         const double arrival =
-            metric_.fan_angle[prev] + std::atan2(-frame.apex_x * by + frame.apex_y * bx, -frame.apex_x * bx - frame.apex_y * by);
+            metric_.fan_angle(prev) + std::atan2(-frame.apex_x * by + frame.apex_y * bx, -frame.apex_x * bx - frame.apex_y * by);
         if (w.via == none)
             reach_from_source(c, d, w.root, none, w.rotation + std::atan2(-by, -bx), arrival);
         else
@@ -410,7 +410,7 @@ private:
         for (Target& target : pending_) {
             if (target.vertex != none || target.at.face != w.halfedge / 3)
                 continue;
-            const HalfedgeFrame& frame = metric_.frame[w.halfedge];
+            const HalfedgeFrame& frame = metric_.frame(w.halfedge);
             const Eigen::Vector2d p = to_frame(frame, w.halfedge, target.at.bary);
             const double dx = p.x() - w.x, dy = p.y() - w.y;
             const double left = (w.begin - w.x) * dy + w.y * dx, right = (w.end - w.x) * dy + w.y * dx;
@@ -428,7 +428,7 @@ private:
                 for (int k = 0; k < 3; ++k) {
                     const int h = 3 * target.at.face + k;
                     bound = std::min(bound,
-                                     field_.distance[surface_.origin(h)] + to_frame(metric_.frame[h], h, target.at.bary).norm());
+                                     field_.distance[surface_.origin(h)] + to_frame(metric_.frame(h), h, target.at.bary).norm());
                 }
                 for (const GeodesicSource& source : sources_)
                     if (source.at.face == target.at.face)

@@ -31,6 +31,8 @@ public:
         : surface_(surface), field_(field), level_(level), cones_(surface, field, sources) {}
 
     void add(int face, std::vector<LevelArc>& arcs) {
+        if (!cones_.reached(face))
+            return;
         double longest = 0;
         for (int k = 0; k < 3; ++k) longest = std::max(longest, surface_.length(3 * face + k));
         for (int v : surface_.face(face))

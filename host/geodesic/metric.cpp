@@ -21,25 +21,32 @@ HalfedgeFrame halfedge_frame(const Surface& surface, int halfedge) {
 }
 
 SurfaceMetric::SurfaceMetric(const Surface& surface)
-    : frame(surface.halfedge_count()),
-      corner_angle(surface.halfedge_count()),
-      fan_angle(surface.halfedge_count()),
-      angle_sum(surface.vertex_count(), 0) {
-    for (int h = 0; h < surface.halfedge_count(); ++h) {
-        frame[h] = halfedge_frame(surface, h);
-        corner_angle[h] = std::atan2(frame[h].apex_y, frame[h].apex_x);
+    : surface_(surface),
+      known_(surface.face_count(), 0),
+      angle_sum_(surface.vertex_count(), unknown),
+      frame_(new HalfedgeFrame[surface.halfedge_count()]),
+      corner_angle_(new double[surface.halfedge_count()]),
+      fan_angle_(new double[surface.halfedge_count()]) {}
+
+void SurfaceMetric::measure(int face) {
+    for (int h = 3 * face; h < 3 * face + 3; ++h) {
+        frame_[h] = halfedge_frame(surface_, h);
+        corner_angle_[h] = std::atan2(frame_[h].apex_y, frame_[h].apex_x);
     }
-    for (int v = 0; v < surface.vertex_count(); ++v) {
-        const int first = surface.outgoing(v);
-        int h = first;
-        while (h != none) {
-            fan_angle[h] = angle_sum[v];
-            angle_sum[v] += corner_angle[h];
-            h = surface.twin(Surface::prev(h));
-            if (h == first)
-                break;
-        }
+    known_[face] = 1;
+}
+
+void SurfaceMetric::sweep(int vertex) {
+    double sum = 0;
+    const int first = surface_.outgoing(vertex);
+    for (int h = first; h != none;) {
+        fan_angle_[h] = sum;
+        sum += corner_angle(h);
+        h = surface_.twin(Surface::prev(h));
+        if (h == first)
+            break;
     }
+    angle_sum_[vertex] = sum;
 }
 
 Eigen::Vector2d to_frame(const HalfedgeFrame& frame, int halfedge, const Eigen::Vector3d& bary) {

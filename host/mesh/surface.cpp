@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <unordered_map>
 
 #include "pvg/status.h"
 
@@ -11,10 +10,6 @@ namespace pvg {
 namespace {
 
 [[noreturn]] void refuse(const std::string& what) { throw Error(ErrorKind::bad_input, "surface: " + what); }
-
-std::uint64_t edge_key(int from, int to) {
-    return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(from)) << 32) | static_cast<std::uint32_t>(to);
-}
 
 double angle_between(const Point& a, const Point& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
@@ -32,17 +27,32 @@ Surface::Surface(std::vector<Point> points, std::vector<Face> faces) : points_(s
             refuse("face " + std::to_string(f) + " repeats a vertex");
     }
 
-    std::unordered_map<std::uint64_t, int> by_ends;
-    by_ends.reserve(static_cast<std::size_t>(halfedge_count()));
-    for (int h = 0; h < halfedge_count(); ++h)
-        if (!by_ends.emplace(edge_key(origin(h), target(h)), h).second)
-            refuse("edge " + std::to_string(origin(h)) + " - " + std::to_string(target(h)) +
-                   " has two faces of the same orientation");
+    // Halfedges sorted by origin, then target; the twin of a -> b is found among those that leave b.
+    std::vector<int> first(vertices + 1, 0), leaving(halfedge_count());
+    for (int h = 0; h < halfedge_count(); ++h) ++first[origin(h) + 1];
+    for (int v = 0; v < vertices; ++v) first[v + 1] += first[v];
+    {
+        std::vector<int> fill(first.begin(), first.end() - 1);
+        for (int h = 0; h < halfedge_count(); ++h) leaving[fill[origin(h)]++] = h;
+        for (int v = 0; v < vertices; ++v)
+            std::sort(leaving.begin() + first[v], leaving.begin() + first[v + 1],
+                      [&](int g, int h) { return target(g) != target(h) ? target(g) < target(h) : g < h; });
+    }
+    const auto between = [&](int from, int to) {
+        const auto end = leaving.begin() + first[from + 1];
+        const auto at = std::lower_bound(leaving.begin() + first[from], end, to, [&](int h, int v) { return target(h) < v; });
+        return at != end && target(*at) == to ? *at : none;
+    };
     twin_.assign(halfedge_count(), none);
     for (int h = 0; h < halfedge_count(); ++h) {
-        const auto found = by_ends.find(edge_key(target(h), origin(h)));
-        if (found != by_ends.end())
-            twin_[h] = found->second;
+        if (between(origin(h), target(h)) != h)
+            refuse("edge " + std::to_string(origin(h)) + " - " + std::to_string(target(h)) +
+                   " has two faces of the same orientation");
+        if (twin_[h] != none)
+            continue;
+        twin_[h] = between(target(h), origin(h));
+        if (twin_[h] != none)
+            twin_[twin_[h]] = h;
     }
 
     outgoing_.assign(vertices, none);

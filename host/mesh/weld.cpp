@@ -33,33 +33,39 @@ PositionKey key_of(const Point& p) {
     return key;
 }
 
-std::uint64_t edge_key(int a, int b) {
-    return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(std::min(a, b))) << 32) |
-           static_cast<std::uint32_t>(std::max(a, b));
-}
-
 /// Twins of halfedges where exactly two oppositely oriented faces meet; everything else is cut.
 std::vector<int> manifold_twins(const std::vector<Face>& faces, const std::vector<Point>& points,
                                 std::vector<std::array<Point, 2>>& cut) {
-    std::unordered_map<std::uint64_t, std::vector<int>> by_edge;
-    by_edge.reserve(faces.size() * 2);
-    for (int h = 0; h < static_cast<int>(3 * faces.size()); ++h) {
-        const Face& f = faces[h / 3];
-        by_edge[edge_key(f[h % 3], f[(h + 1) % 3])].push_back(h);
+    const int halfedges = static_cast<int>(3 * faces.size());
+    const auto from = [&](int h) { return faces[h / 3][h % 3]; };
+    const auto to = [&](int h) { return faces[h / 3][(h + 1) % 3]; };
+    // Halfedges sorted by their edge: first by its lower vertex (in linear time), then by the higher one.
+    std::vector<int> first(points.size() + 1, 0), sorted(halfedges);
+    for (int h = 0; h < halfedges; ++h) ++first[std::min(from(h), to(h)) + 1];
+    for (std::size_t v = 0; v < points.size(); ++v) first[v + 1] += first[v];
+    {
+        std::vector<int> fill(first.begin(), first.end() - 1);
+        for (int h = 0; h < halfedges; ++h) sorted[fill[std::min(from(h), to(h))]++] = h;
     }
-    std::vector<int> twin(3 * faces.size(), none);
-    for (int h = 0; h < static_cast<int>(twin.size()); ++h) {
-        const int from = faces[h / 3][h % 3], to = faces[h / 3][(h + 1) % 3];
-        const std::vector<int>& all = by_edge[edge_key(from, to)];
-        if (all.size() == 1)
-            continue;
-        const int other = all[0] == h ? all[1] : all[0];
-        const bool opposite = faces[other / 3][other % 3] == to;
-        if (all.size() == 2 && opposite)
-            twin[h] = other;
-        else if (all[0] == h)
-            cut.push_back({points[from], points[to]});
+    std::vector<int> twin(halfedges, none), cut_at;
+    for (std::size_t v = 0; v < points.size(); ++v) {
+        const auto begin = sorted.begin() + first[v], end = sorted.begin() + first[v + 1];
+        const auto high = [&](int h) { return std::max(from(h), to(h)); };
+        std::sort(begin, end, [&](int g, int h) { return high(g) != high(h) ? high(g) < high(h) : g < h; });
+        for (auto edge = begin; edge != end;) {
+            auto next = edge + 1;
+            while (next != end && high(*next) == high(*edge)) ++next;
+            if (next - edge == 2 && from(edge[0]) == to(edge[1])) {
+                twin[edge[0]] = edge[1];
+                twin[edge[1]] = edge[0];
+            } else if (next - edge > 1) {
+                cut_at.push_back(*edge);
+            }
+            edge = next;
+        }
     }
+    std::sort(cut_at.begin(), cut_at.end());
+    for (int h : cut_at) cut.push_back({points[from(h)], points[to(h)]});
     return twin;
 }
 
