@@ -24,7 +24,8 @@ std::vector<double> knot_sizes(const Domain& domain, const KnotOptions& options,
     for (std::size_t v = 0; v < size.size(); ++v) {
         const double least = least_edge_share * std::min(domain.edge_length[v], options.spacing);
         const double wanted = std::min(options.grading * curve_distance[v], options.feature_grading * feature_distance[v]);
-        size[v] = std::clamp(wanted, least, options.spacing);
+        const double most = std::min(options.spacing, options.most_edges * domain.edge_length[v]);
+        size[v] = std::clamp(wanted, std::min(least, most), most);
     }
     return size;
 }

@@ -5,6 +5,7 @@
 #include "fixtures/domains.h"
 #include "geodesic/geodesic.h"
 #include "pvg/status.h"
+#include "solve/voronoi.h"
 
 namespace pvg {
 namespace {
@@ -123,6 +124,22 @@ TEST(Knots, VerticesWithinAnEdgeOfACurveAreKnots) {
     EXPECT_LT(4 * far_knots, far);
 }
 
+TEST(Knots, CellsStaySmallOnFineMeshes) {
+    // However wide the spacing: at most five edges, about 20 vertices a cell, four times as many where knots are packed loosely.
+    Domain domain = plain_domain(fixtures::irregular_plane(120, 120));
+    KnotOptions options;
+    options.spacing = 1;
+    const Knots knots = place_knots(domain, options);
+    int inside = 0;
+    for (int v : knots.vertex) inside += !domain.surface.is_border_vertex(v);
+    EXPECT_GT(40 * inside, domain.surface.vertex_count());
+    EXPECT_LT(10 * inside, domain.surface.vertex_count());
+    const Voronoi voronoi = geodesic_voronoi(domain, knots);
+    std::vector<int> held(knots.vertex.size(), 0);
+    for (int c : voronoi.cell) ++held[c];
+    EXPECT_LE(*std::max_element(held.begin(), held.end()), 80);
+}
+
 TEST(Knots, DoNotDependOnScale) {
     Domain domain = fixtures::slit_square(2000).domain;
     KnotOptions options;
@@ -143,7 +160,7 @@ TEST(Knots, EveryComponentGetsOne) {
         faces.push_back({f[0] + ball.vertex_count(), f[1] + ball.vertex_count(), f[2] + ball.vertex_count()});
     const Domain domain = plain_domain(Surface(points, faces));
     KnotOptions options;
-    options.spacing = 100;
+    options.spacing = options.most_edges = 100;
     const Knots knots = place_knots(domain, options);
     ASSERT_EQ(knots.vertex.size(), 2u);
     EXPECT_LT(knots.vertex[0], ball.vertex_count());
