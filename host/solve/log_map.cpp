@@ -9,6 +9,33 @@ namespace pvg {
 
 using Complex = std::complex<double>;
 
+namespace {
+
+/// The place of a face's third corner c from those of a and b; edge: the length of ab, turn: c - a over b - a in the face's
+/// plane. The face is laid flat with the centre where the distances of a and b have it; that gives the distance of c, and c's
+/// direction lies between theirs as it does there. Where the surface is not flat, places of a and b are not as far apart as a and
+/// b are: laying the face on them would scale it, and on saddles the error feeds itself until the map folds over.
+Complex third_place(Complex a, Complex b, double edge, Complex turn) {
+    const double apart = std::abs(b - a), to_a = std::abs(a), to_b = std::abs(b);
+    if (std::abs(apart - edge) <= 1e-9 * edge || !(to_a > 0) || !(to_b > 0))
+        return a + turn * (b - a);
+    const double along = (edge * edge + to_a * to_a - to_b * to_b) / (2 * edge), square = to_a * to_a - along * along;
+    // a is at 0, b at edge; where no such triangle exists, the nearer of the two is passed on the way to the other.
+    Complex centre(to_a < to_b ? -to_a : edge + to_b, 0);
+    if (square > 0)
+        centre = {along, std::imag(-a * std::conj(b - a)) < 0 ? -std::sqrt(square) : std::sqrt(square)};
+    const Complex c = edge * turn - centre;
+    if (!(std::abs(c) > 0))
+        return 0;
+    const Complex from_a = c / -centre, from_b = c / (edge - centre);
+    const double turn_a = std::abs(std::arg(from_a)), turn_b = std::abs(std::arg(from_b));
+    const double share = turn_a + turn_b > 0 ? turn_a / (turn_a + turn_b) : 0.5;
+    const Complex direction = (1 - share) * a / to_a * from_a / std::abs(from_a) + share * b / to_b * from_b / std::abs(from_b);
+    return std::abs(direction) > 0 ? std::abs(c) / std::abs(direction) * direction : a + turn * (b - a);
+}
+
+}  // namespace
+
 LogMap::LogMap(const Surface& surface, const std::vector<int>& partner)
     : surface_(surface), partner_(partner), turn_(surface.halfedge_count()) {
     for (int h = 0; h < surface.halfedge_count(); ++h) {
@@ -26,8 +53,9 @@ void LogMap::unfold(const std::vector<int>& vertices, const std::vector<int>& lo
     // A vertex takes the mean of the places that the faces laid before it give: where the surface is curved they differ, and a
     // single one would leave cracks between branches of the unfolding. Nearest first; equal distances by number, the same order
     // everywhere.
-    auto& [sum, votes, laid, queue] = buffers;
+    auto& [sum, reach, votes, laid, queue] = buffers;
     sum.assign(count, 0);
+    reach.assign(count, 0);
     votes.assign(count, 0);
     laid.assign(count, 0);
     queue.clear();
@@ -36,6 +64,7 @@ void LogMap::unfold(const std::vector<int>& vertices, const std::vector<int>& lo
         if (v == none || laid[v])
             return;
         sum[v] += at;
+        reach[v] += std::abs(at);
         if (++votes[v] > 1)
             return;
         queue.emplace_back(std::norm(at), v);
@@ -73,10 +102,11 @@ void LogMap::unfold(const std::vector<int>& vertices, const std::vector<int>& lo
             const int last = Surface::prev(h);
             const int j = local[surface_.target(h)], m = local[surface_.origin(last)];
             if (j != none && m != none && laid[j] != laid[m] && turn_[h] != 0.0) {
+                const double edge = surface_.length(h);
                 if (laid[j])
-                    vote(m, place[i] + turn_[h] * (place[j] - place[i]));
+                    vote(m, third_place(place[i], place[j], edge, turn_[h]));
                 else
-                    vote(j, place[i] + (place[m] - place[i]) / turn_[h]);
+                    vote(j, third_place(place[i], place[m], edge * std::abs(turn_[h]), 1.0 / turn_[h]));
             }
             h = surface_.twin(last);
             if (h == start)
@@ -102,7 +132,7 @@ void LogMap::unfold(const std::vector<int>& vertices, const std::vector<int>& lo
         const int v = queue.back().second;
         queue.pop_back();
         if (!laid[v])
-            settle(v, sum[v] / static_cast<double>(votes[v]));
+            settle(v, std::abs(sum[v]) > 0 ? reach[v] / (votes[v] * std::abs(sum[v])) * sum[v] : sum[v]);
     }
 
     for (std::size_t v = 0; v < count; ++v) {

@@ -1,6 +1,8 @@
 // A log map good enough to span low harmonic polynomials: the surface around a vertex laid into the plane face by face, nearest
-// vertices first. Exact in the plane; elsewhere each face keeps its shape and takes size and direction from the edge it is laid
-// to. After R. Schmidt, C. Grimm, B. Wyvill, "Interactive decal compositing with discrete exponential maps", ACM TOG 25(3), 2006.
+// vertices first. Exact in the plane; elsewhere distances from the vertex come from faces in their true size, and directions are
+// interpolated between a face's corners. After R. Schmidt, C. Grimm, B. Wyvill, "Interactive decal compositing with discrete
+// exponential maps", ACM TOG 25(3), 2006, and E. L. Melvaer, M. Reimers, "Geodesic polar coordinates on polygonal meshes",
+// Computer Graphics Forum 31(8), 2012.
 #pragma once
 
 #include <complex>
@@ -20,6 +22,7 @@ public:
     /// Working memory of one thread.
     struct Buffers {
         std::vector<std::complex<double>> sum;
+        std::vector<double> reach;  ///< sum of the distances that the votes give
         std::vector<int> votes;
         std::vector<char> laid;
         std::vector<std::pair<double, int>> queue;
