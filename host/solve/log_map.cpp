@@ -117,12 +117,13 @@ void LogMap::unfold(const std::vector<int>& vertices, const std::vector<int>& lo
         laid[v] = 1;
         place[v] = at;
         unfold_around(vertices[v]);
-        const int other = partner_[vertices[v]];
-        if (other == none || local[other] == none || laid[local[other]])
-            return;
-        laid[local[other]] = 1;
-        place[local[other]] = at;
-        unfold_around(other);
+        for (int copy = partner_[vertices[v]]; copy != none && copy != vertices[v]; copy = partner_[copy]) {
+            if (local[copy] == none || laid[local[copy]])
+                continue;
+            laid[local[copy]] = 1;
+            place[local[copy]] = at;
+            unfold_around(copy);
+        }
     };
 
     lay_fan(vertices[0]);

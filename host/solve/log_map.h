@@ -16,7 +16,7 @@ namespace pvg {
 /// The faces' shapes, made once; const calls may run in parallel.
 class LogMap {
 public:
-    /// partner: per vertex the other copy on a sharp Poisson curve, or none; the two copies fall together.
+    /// partner: per vertex the next copy on sharp Poisson curves, in a ring, or none; copies fall together.
     LogMap(const Surface& surface, const std::vector<int>& partner);
 
     /// Working memory of one thread.

@@ -73,8 +73,7 @@ void PatchSolver::gather(int cell) {
     for (std::size_t at = 0; at < vertices_.size(); ++at) {
         const int v = vertices_[at];
         for (Eigen::SparseMatrix<double>::InnerIterator entry(space_.S, v); entry; ++entry) reach(static_cast<int>(entry.row()));
-        if (space_.partner[v] != none)
-            reach(space_.partner[v]);
+        for (int copy = space_.partner[v]; copy != none && copy != v; copy = space_.partner[copy]) reach(copy);
     }
     for (int v : queue_)
         if (local_[v] == waiting)
@@ -101,7 +100,7 @@ void PatchSolver::join_edges() {
 }
 
 /// Brings those to the front that, one after another, are farthest from all chosen before, as seen from the cell's knot.
-/// Distances go from cell to cell, so that the two sides of a slit are apart; the two copies on a Poisson curve go together.
+/// Distances go from cell to cell, so that the two sides of a slit are apart; the copies on a Poisson curve go together.
 void PatchSolver::spread(std::vector<Candidate>& candidates, int wanted) const {
     const int count = static_cast<int>(candidates.size());
     const auto vertex = [&](int i) { return space_.knots.vertex[candidates[i].knot]; };
@@ -144,13 +143,15 @@ void PatchSolver::spread(std::vector<Candidate>& candidates, int wanted) const {
         }
         for (int k = 0; k < count; ++k) gap[k] = std::min(gap[k], distance[k]);
     };
-    const auto choose_both = [&](int i) {
+    const auto choose_copies = [&](int i) {
         choose(i);
-        const int other = space_.partner[vertex(i)] == none ? none : find(space_.knots.knot_of_vertex[space_.partner[vertex(i)]]);
-        if (other != none && !chosen[other])
-            choose(other);
+        for_copies(local_[vertex(i)], [&](int copy) {
+            const int knot = space_.knots.knot_of_vertex[vertices_[copy]], other = knot == none ? none : find(knot);
+            if (other != none && !chosen[other])
+                choose(other);
+        });
     };
-    choose_both(0);
+    choose_copies(0);
     while (static_cast<int>(order.size()) < wanted) {
         int best = none;
         double most = -1;
@@ -163,7 +164,7 @@ void PatchSolver::spread(std::vector<Candidate>& candidates, int wanted) const {
         }
         if (best == none)
             break;
-        choose_both(best);
+        choose_copies(best);
     }
     for (int i = 0; i < count; ++i)
         if (!chosen[i])
@@ -265,7 +266,7 @@ void PatchSolver::attach_dirichlet() {
         }
 }
 
-/// One unknown a free vertex, the two copies on a sharp Poisson curve share one. Numbered by breadth from the far side of the
+/// One unknown a free vertex, the copies on sharp Poisson curves share one. Numbered by breadth from the far side of the
 /// patch, backwards (reverse Cuthill-McKee without its sorting by degree, which meshes do not need).
 void PatchSolver::number_unknowns() {
     const int count = static_cast<int>(vertices_.size());
@@ -277,10 +278,13 @@ void PatchSolver::number_unknowns() {
             return;
         unknown_[v] = unknowns_;
         queue_.push_back(v);
-        if (const int other = partner(v); other != none) {
-            unknown_[other] = unknowns_;
-            queue_.push_back(other);
-        }
+        const int root = right_of(v) == none ? v : right_of(v);
+        for_copies(v, [&](int copy) {
+            if (copy != root && right_of(copy) != root)
+                return;
+            unknown_[copy] = unknowns_;
+            queue_.push_back(copy);
+        });
         ++unknowns_;
     };
     std::size_t at = 0;
@@ -317,8 +321,10 @@ void PatchSolver::open_columns(const Patch& patch) {
             column_of_[entry] = columns_++;
     };
     for (int i = 0; i < patch.list_knots; ++i) {
-        const int v = local_[patch.rows[i]], other = partner(v);
-        if (fixed(v) || (other != none && entry_[other] != none))
+        const int v = local_[patch.rows[i]];
+        bool known = fixed(v);
+        for_copies(v, [&](int copy) { known = known || entry_[copy] != none; });
+        if (known)
             open(i);
     }
     for (std::size_t s = patch.list_knots; s < patch.list.size(); ++s) open(static_cast<int>(s));
@@ -343,7 +349,28 @@ double* PatchSolver::new_offset(int v) {
     return offset_.data() + static_cast<std::size_t>(offset_of_[v]) * width_;
 }
 
-/// What Dirichlet vertices and right copies are, apart from their unknown.
+/// The listed copies of one vertex that lie on the same two sides of the curve as the copies left and right, as near along it as
+/// there are any; none where no curve joins them.
+std::pair<int, int> PatchSolver::listed_sides(int left, int right) {
+    sides_.assign(1, {left, right});
+    for (std::size_t at = 0; at < sides_.size(); ++at) {
+        const auto [a, b] = sides_[at];
+        if (entry_[a] != none && entry_[b] != none)
+            return {a, b};
+        for (int e = edge_first_[a]; e < edge_first_[a + 1]; ++e) {
+            const int next = edge_to_[e];
+            for_copies(next, [&](int copy) {
+                const auto begin = edge_to_.begin() + edge_first_[b], end = edge_to_.begin() + edge_first_[b + 1];
+                const std::pair<int, int> pair(next, copy);
+                if (std::find(begin, end, copy) != end && std::find(sides_.begin(), sides_.end(), pair) == sides_.end())
+                    sides_.push_back(pair);
+            });
+        }
+    }
+    return {none, none};
+}
+
+/// What Dirichlet vertices and left copies are, apart from their unknown.
 void PatchSolver::add_offsets() {
     const int count = static_cast<int>(vertices_.size());
     offset_of_.assign(count, none);
@@ -369,20 +396,17 @@ void PatchSolver::add_offsets() {
             for (int m = 0; m < modes_; ++m) row[columns_ + m] -= share * values[m];
         }
     }
-    // A pair of copies whose own knots are not both listed takes the jump of the nearest pair that is.
-    queue_.clear();
-    for (int v = 0; v < count; ++v)
-        if (is_right(v) && entry_[v] != none && entry_[partner(v)] != none)
-            queue_.push_back(v);
-    for (int v = 0; v < count && !queue_.empty(); ++v) {
-        if (!is_right(v))
+    // Copies whose own knots are not both listed take the jump of the nearest along the curve that are. Which copy a coupling
+    // calls left may change along a curve, so sides are followed, not names.
+    for (int v = 0; v < count; ++v) {
+        if (right_of(v) == none)
             continue;
-        const auto nearest = std::min_element(queue_.begin(), queue_.end(), [&](int a, int b) {
-            return std::norm(place_[a] - place_[v]) < std::norm(place_[b] - place_[v]);
-        });
+        const auto [left, right] = listed_sides(v, right_of(v));
+        if (left == none)
+            continue;
         double* const row = new_offset(v);
-        row[column_of_[entry_[*nearest]]] = 1;
-        row[column_of_[entry_[partner(*nearest)]]] = -1;
+        row[column_of_[entry_[left]]] = 1;
+        row[column_of_[entry_[right]]] = -1;
     }
 }
 
@@ -491,8 +515,7 @@ void PatchSolver::read_rows(int cell, Patch& patch) const {
         const int v = local_[patch.rows[e]];
         if (fixed(v))
             patch.fixed.push_back(e);
-        else if (!(is_right(v) &&
-                   entry_[partner(v)] != none))  // the two copies on a Poisson curve say the same; one of them is enough
+        else if (const int right = right_of(v); right == none || entry_[right] == none)  // tied copies say the same
             patch.data.push_back(e);
     }
     patch.polynomials.resize(static_cast<Eigen::Index>(patch.fixed.size()), modes_);

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <complex>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -72,9 +73,17 @@ private:
     void read_rows(int cell, Patch& patch) const;
 
     bool fixed(int v) const { return space_.domain.dirichlet[vertices_[v]] != 0; }
-    /// The other copy inside the patch, or none.
-    int partner(int v) const { return space_.partner[vertices_[v]] == none ? none : local_[space_.partner[vertices_[v]]]; }
-    bool is_right(int v) const { return space_.is_right[vertices_[v]] && partner(v) != none; }
+    /// The copy inside the patch that a left copy's jump stands against, or none.
+    int right_of(int v) const { return space_.right[vertices_[v]] == none ? none : local_[space_.right[vertices_[v]]]; }
+    /// Calls visit(copy) for the other copies inside the patch of a vertex on sharp Poisson curves.
+    template <typename Visit>
+    void for_copies(int v, const Visit& visit) const {
+        const int vertex = vertices_[v];
+        for (int copy = space_.partner[vertex]; copy != none && copy != vertex; copy = space_.partner[copy])
+            if (local_[copy] >= 0)
+                visit(local_[copy]);
+    }
+    std::pair<int, int> listed_sides(int left, int right);
     /// 1, Re z, Im z, Re z^2, Im z^2, ... of a vertex, lengths in units of scale_.
     void polynomials(int v, double* values) const;
     double* new_offset(int v);
@@ -100,6 +109,7 @@ private:
     std::vector<double> offset_;
     std::vector<int> column_of_;  ///< list position -> right-hand side, or none
     std::vector<int> queue_;
+    std::vector<std::pair<int, int>> sides_;
     int unknowns_ = 0, held_ = none, columns_ = 0, width_ = 0, offsets_ = 0;
     double scale_ = 1;
     bool has_dirichlet_ = false, anchored_ = false;

@@ -15,8 +15,9 @@ Eigen::SparseMatrix<double> delaunay_stiffness(const Surface& surface) {
 
 std::vector<int> coupled_partners(const Domain& domain) {
     std::vector<int> partner(domain.surface.vertex_count(), none);
+    // Where curves cross, several left copies share a right one: each is put into its ring.
     for (const Coupling& coupling : domain.couplings) {
-        partner[coupling.left] = coupling.right;
+        partner[coupling.left] = partner[coupling.right] == none ? coupling.right : partner[coupling.right];
         partner[coupling.right] = coupling.left;
     }
     return partner;
@@ -29,9 +30,9 @@ PatchSpace::PatchSpace(const Domain& domain_, const Knots& knots_, const Voronoi
       knots(knots_),
       S(delaunay_stiffness(domain.surface)),
       partner(coupled_partners(domain)),
-      is_right(domain.surface.vertex_count(), 0),
+      right(domain.surface.vertex_count(), none),
       log_map(domain.surface, partner) {
-    for (const Coupling& coupling : domain.couplings) is_right[coupling.right] = 1;
+    for (const Coupling& coupling : domain.couplings) right[coupling.left] = coupling.right;
     join_cells(voronoi);
     sort_vertices(voronoi);
     integrate_sources();

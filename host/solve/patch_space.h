@@ -21,8 +21,8 @@ public:
     const Domain& domain;
     const Knots& knots;
     Eigen::SparseMatrix<double> S;     ///< V x V stiffness on the intrinsic Delaunay triangulation of the whole domain
-    std::vector<int> partner;          ///< V: the other copy of a vertex on a sharp Poisson curve, or none
-    std::vector<char> is_right;        ///< V: 1 for the right copy
+    std::vector<int> partner;          ///< V: the next copy of a vertex on sharp Poisson curves, in a ring, or none
+    std::vector<int> right;            ///< V: the copy that a left one's jump stands against, or none
     std::vector<int> neighbour_first;  ///< N + 1: cells that touch or that an edge of S or a sharp Poisson curve joins, ascending
     std::vector<int> neighbours;
     std::vector<int> cell_first;                ///< N + 1

@@ -117,6 +117,30 @@ TEST(BasisLaws, JumpsAreExact) {
     for (int v = 0; v < u.size(); ++v) EXPECT_NEAR(u[v], truth[v] > 0.5 ? 1.0 : 0.0, 2e-6);
 }
 
+TEST(BasisLaws, EitherCopyMayBeCalledLeft) {
+    // Imprinted curves do not keep to one side. Here every third coupling is turned around; the field is the same.
+    const fixtures::BentSquare square(60);
+    std::vector<fixtures::Chain> chains(2);
+    chains[0].vertices = square.line({{0.3, 0.3}, {0.7, 0.3}, {0.7, 0.7}, {0.3, 0.7}, {0.3, 0.3}});
+    chains[0].jump = [](const Point&) { return 1.0; };
+    chains[1].vertices = square.line({{0.1, 0.1}, {0.9, 0.1}});
+    chains[1].left = chains[1].right = [](const Point&) { return 0.0; };
+    Domain domain = square.domain(chains);
+    const Eigen::VectorXd truth = fixtures::fem_solution(domain, fixtures::fem_stiffness(domain.surface));
+    for (std::size_t c = 0; c < domain.couplings.size(); c += 3) {
+        std::swap(domain.couplings[c].left, domain.couplings[c].right);
+        domain.couplings[c].jump *= -1;
+    }
+    const Built built(std::move(domain), 0.05);
+    // Short lists, so that many pairs on the curve are not listed.
+    BasisTuning tuning;
+    tuning.patch.list = 12;
+    tuning.exact_knots = false;
+    const Table table = local_basis(built.space, {.threads = 2}, tuning);
+    const Eigen::VectorXd u = fixtures::evaluate(table, built.coefficients([&](int v) { return truth[v] > 0.5 ? 1.0 : 0.0; }));
+    for (int v = 0; v < u.size(); ++v) EXPECT_NEAR(u[v], truth[v] > 0.5 ? 1.0 : 0.0, 2e-6);
+}
+
 TEST(BasisLaws, DirichletRowsAreTheirOwnKnot) {
     const Built& built = three_curves();
     const Table& t = built.table;
