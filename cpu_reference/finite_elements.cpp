@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -13,7 +14,7 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
-#include "cpu_reference/delaunay_flips.h"
+#include "cpu_reference/border_refinement.h"
 
 namespace pvg {
 namespace {
@@ -48,27 +49,6 @@ void check_problem(const FemProblem& problem) {
     }
     require(problem.laplacian.size() == 0 || problem.laplacian.rows() == static_cast<int>(problem.faces.size()),
             "laplacian needs one row a face");
-}
-
-Matrix stiffness(const FemProblem& problem, FemTriangulation triangulation) {
-    LengthMesh mesh = make_length_mesh(problem.points, problem.faces);
-    if (triangulation == FemTriangulation::intrinsic_delaunay)
-        flip_to_delaunay(mesh);
-    std::vector<Eigen::Triplet<double>> entries;
-    for (std::size_t f = 0; f < mesh.vertices.size(); ++f) {
-        for (int k = 0; k < 3; ++k) {
-            const int i = mesh.vertices[f][k], j = mesh.vertices[f][(k + 1) % 3];
-            const double weight = 0.5 * opposite_cotangent(mesh.lengths[f], k);
-            entries.emplace_back(i, i, weight);
-            entries.emplace_back(j, j, weight);
-            entries.emplace_back(i, j, -weight);
-            entries.emplace_back(j, i, -weight);
-        }
-    }
-    const auto n = static_cast<Eigen::Index>(problem.points.size());
-    Matrix S(n, n);
-    S.setFromTriplets(entries.begin(), entries.end());
-    return S;
 }
 
 double face_area(const FemProblem& problem, std::size_t f) {
@@ -110,6 +90,123 @@ public:
 private:
     std::vector<int> parent_;
     Eigen::MatrixXd offset_;
+};
+
+/// Which border sides face each other across a jump, and which vertices are held. Banks of a seam have the same places in space;
+/// one end at least hangs on its opposite by a jump; the other may be one vertex, or two held ones.
+Border border_of(const FemProblem& problem, const LengthMesh& mesh) {
+    Border border;
+    border.held.resize(problem.points.size());
+    for (const auto& dirichlet : problem.dirichlet) border.held[dirichlet.first] = true;
+    if (problem.jumps.empty())
+        return border;
+    OffsetSets sets(problem.points.size(), 0);
+    for (const FemProblem::Jump& jump : problem.jumps) sets.join(jump.left, jump.right, Eigen::RowVectorXd(0));
+    using Place = std::array<double, 6>;
+    const auto place = [&](int from, int to) {
+        const auto &p = problem.points[from], &q = problem.points[to];
+        return Place{p.x(), p.y(), p.z(), q.x(), q.y(), q.z()};
+    };
+    std::multimap<Place, Side> by_place;
+    for (std::size_t f = 0; f < mesh.vertices.size(); ++f) {
+        for (int k = 0; k < 3; ++k) {
+            const int a = mesh.vertices[f][k], b = mesh.vertices[f][(k + 1) % 3];
+            if (mesh.twins[f][k] < 0)
+                by_place.emplace(place(a, b), Side{a, b});
+        }
+    }
+    for (const auto& entry : by_place) {
+        const auto [a, b] = entry.second;
+        const auto [first, last] = by_place.equal_range(place(b, a));
+        for (auto it = first; it != last; ++it) {
+            const auto [c, d] = it->second;
+            const bool a_joined = sets.root(a) == sets.root(d), b_joined = sets.root(b) == sets.root(c);
+            const bool a_goes = a_joined || (border.held[a] && border.held[d]);
+            const bool b_goes = b_joined || (border.held[b] && border.held[c]);
+            if (a_goes && b_goes && ((a_joined && a != d) || (b_joined && b != c)))
+                border.seams[{a, b}] = {c, d};
+        }
+    }
+    return border;
+}
+
+/// The operator, with the free values of the points on the border as further unknowns: V given vertices, then those.
+struct Elements {
+    Matrix S;
+    std::vector<int> carrier;  ///< per further unknown: a given vertex of the same component
+};
+
+Elements assemble(const FemProblem& problem, FemTriangulation triangulation) {
+    const auto given = static_cast<int>(problem.points.size());
+    LengthMesh mesh = make_length_mesh(problem.points, problem.faces);
+    std::vector<AddedVertex> added;
+    if (triangulation == FemTriangulation::intrinsic_delaunay)
+        added = refine_border(mesh, border_of(problem, mesh));
+    const int all = given + static_cast<int>(added.size());
+    std::vector<Eigen::Triplet<double>> entries;
+    for (std::size_t f = 0; f < mesh.vertices.size(); ++f) {
+        for (int k = 0; k < 3; ++k) {
+            const int i = mesh.vertices[f][k], j = mesh.vertices[f][(k + 1) % 3];
+            const double weight = 0.5 * opposite_cotangent(mesh.lengths[f], k);
+            entries.emplace_back(i, i, weight);
+            entries.emplace_back(j, j, weight);
+            entries.emplace_back(i, j, -weight);
+            entries.emplace_back(j, i, -weight);
+        }
+    }
+    Elements elements;
+    elements.S.resize(all, all);
+    elements.S.setFromTriplets(entries.begin(), entries.end());
+    if (added.empty())
+        return elements;
+    // Two banks of a seam have one free value; the jump between them is linear between the seam's given vertices.
+    entries.clear();
+    for (int v = 0; v < given; ++v) entries.emplace_back(v, v, 1.0);
+    int unknowns = given;
+    for (int n = given; n < all; ++n) {
+        const AddedVertex& here = added[n - given];
+        if (here.across > n)
+            continue;
+        elements.carrier.push_back(here.from);
+        entries.emplace_back(n, unknowns, 1.0);
+        if (here.across >= 0) {
+            const AddedVertex& there = added[here.across - given];
+            entries.emplace_back(here.across, unknowns, 1.0);
+            const std::array<std::pair<int, double>, 4> jump{
+                {{there.from, 1 - there.at}, {there.to, there.at}, {here.from, -(1 - here.at)}, {here.to, -here.at}}};
+            for (const auto& [v, part] : jump) entries.emplace_back(here.across, v, part);
+        }
+        ++unknowns;
+    }
+    Matrix values(all, unknowns);
+    values.setFromTriplets(entries.begin(), entries.end());
+    elements.S = Matrix(values.transpose() * elements.S * values);
+    return elements;
+}
+
+/// Energy of a field on the given vertices: the least over the border's free values.
+class EnergyNorm {
+public:
+    EnergyNorm(const Matrix& S, Eigen::Index given)
+        : outer_(S.topLeftCorner(given, given)), mixed_(S.bottomLeftCorner(S.rows() - given, given)) {
+        if (mixed_.rows() == 0)
+            return;
+        factor_.compute(Matrix(S.bottomRightCorner(S.rows() - given, S.rows() - given)));
+        if (factor_.info() != Eigen::Success)
+            throw std::runtime_error("finite elements: the factorisation failed");
+    }
+    double operator()(const Eigen::VectorXd& v) const {
+        double energy = v.dot(outer_ * v);
+        if (mixed_.rows() > 0) {
+            const Eigen::VectorXd pull = mixed_ * v;
+            energy -= pull.dot(factor_.solve(pull));
+        }
+        return energy < 0 ? 0 : std::sqrt(energy);  // rounding may make 0 negative; what is not a number stays so
+    }
+
+private:
+    Matrix outer_, mixed_;
+    Eigen::SimplicialLDLT<Matrix> factor_;
 };
 
 /// For each vertex whether its component has a Dirichlet value.
@@ -173,6 +270,8 @@ Eigen::MatrixXd solve_finite_elements(const FemProblem& problem, FemTriangulatio
         fixed[v] = true;
         u.row(v) = value;
     }
+    const Elements elements = assemble(problem, triangulation);
+    const auto further = static_cast<int>(elements.carrier.size());
     std::vector<int> unknown(problem.points.size(), -1);  // of the set's root
     int unknowns = 0;
     for (int v = 0; v < count; ++v) {
@@ -192,20 +291,27 @@ Eigen::MatrixXd solve_finite_elements(const FemProblem& problem, FemTriangulatio
             entries.emplace_back(v, unknown[r], 1.0);
         }
     }
+    for (int i = 0; i < further; ++i) {
+        if (reached[elements.carrier[i]])
+            entries.emplace_back(count + i, unknowns++, 1.0);
+    }
     if (unknowns == 0)
         return u;
-    Matrix T(count, unknowns);
+    u.conservativeResize(count + further, channels);
+    u.bottomRows(further).setZero();
+    Matrix T(count + further, unknowns);
     T.setFromTriplets(entries.begin(), entries.end());
 
     // Delta u = f is S u = -load; f is constant on a face and a hat function's integral over it is a third of its area.
-    Eigen::MatrixXd load = Eigen::MatrixXd::Zero(count, channels);
+    // The border's points carry none: three corners a given face keep its sum and its centre.
+    Eigen::MatrixXd load = Eigen::MatrixXd::Zero(count + further, channels);
     if (problem.laplacian.size() > 0) {
         for (std::size_t f = 0; f < problem.faces.size(); ++f) {
             const double third = face_area(problem, f) / 3;
             for (int v : problem.faces[f]) load.row(v) += third * problem.laplacian.row(static_cast<Eigen::Index>(f));
         }
     }
-    const Matrix S = stiffness(problem, triangulation);
+    const Matrix& S = elements.S;
     const Matrix A = T.transpose() * S * T;
     const Eigen::MatrixXd rhs = -(T.transpose() * (load + S * u));
     const Eigen::SimplicialLDLT<Matrix> factor(A);
@@ -215,7 +321,7 @@ Eigen::MatrixXd solve_finite_elements(const FemProblem& problem, FemTriangulatio
     if (factor.info() != Eigen::Success || !x.allFinite())
         throw std::runtime_error("finite elements: the solve failed");
     u += T * x;
-    return u;
+    return u.topRows(count);
 }
 
 Eigen::RowVectorXd error_scale(const FemProblem& problem, const Eigen::MatrixXd& truth) {
@@ -243,16 +349,12 @@ std::vector<FieldError> compare_fields(const FemProblem& problem, const Eigen::M
         for (int v : problem.faces[f]) area[v] += face_area(problem, f) / 3;
     }
     area = area.cwiseProduct(mask);
-    const Matrix S = stiffness(problem, triangulation);
+    const Matrix S = assemble(problem, triangulation).S;
+    const EnergyNorm energy_norm(S, count);
     const auto percent = [](double error, double size) {
         if (error == 0)
             return 0.0;
         return size > 0 ? 100 * error / size : std::numeric_limits<double>::infinity();
-    };
-
-    const auto energy_norm = [&](const Eigen::VectorXd& v) {
-        const double energy = v.dot(S * v);
-        return energy < 0 ? 0 : std::sqrt(energy);  // rounding may make 0 negative; what is not a number stays so
     };
 
     std::vector<FieldError> errors(static_cast<std::size_t>(truth.cols()));
@@ -267,7 +369,8 @@ std::vector<FieldError> compare_fields(const FemProblem& problem, const Eigen::M
         const double total = area.sum();
         error.mean = percent(total > 0 ? area.dot(e.cwiseAbs()) / total : 0, scale.range);
         error.max = percent(e.cwiseAbs().maxCoeff<Eigen::PropagateNaN>(), scale.range);
-        // A constant has no energy; what rounding leaves of it is nothing to measure against (a square root: of 1e-14 of the sum).
+        // A constant has no energy; what rounding leaves of it is nothing to measure against (a square root: of 1e-14 of the
+        // sum).
         const double size = energy_norm(u), noise = scale.largest * std::sqrt(S.diagonal().cwiseAbs().sum());
         error.h1 = percent(energy_norm(e), size > 1e-7 * noise ? size : noise);
     }

@@ -26,7 +26,8 @@ struct FemProblem {
 
 /// What the stiffness matrix is assembled on.
 enum class FemTriangulation {
-    intrinsic_delaunay,  ///< the same surface and vertices, edges flipped on lengths: slivers do not spoil the elements
+    intrinsic_delaunay,  ///< the same surface, edges flipped on lengths and the border given points of its own, where it faces
+                         ///< obtuse angles (border_refinement.h): slivers do not spoil the elements
     as_given,            ///< the faces themselves
 };
 

@@ -6,38 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
+#include <utility>
 
 namespace pvg {
 namespace {
 
 int next(int halfedge) { return Surface::next(halfedge); }
 int prev(int halfedge) { return Surface::prev(halfedge); }
-
-double area_from_lengths(double a, double b, double c) {
-    if (a < b)
-        std::swap(a, b);
-    if (a < c)
-        std::swap(a, c);
-    if (b < c)
-        std::swap(b, c);
-    const double square = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c));
-    return square > 0 ? 0.25 * std::sqrt(square) : 0;
-}
-
-/// Of the angle opposite to the halfedge: twice the face's area (sine) and half the law of cosines (cosine), both times the
-/// adjacent lengths.
-struct OppositeAngle {
-    double sine = 0;
-    double cosine = 0;
-    double scale = 0;
-};
-
-OppositeAngle opposite_angle(const IntrinsicTriangulation& triangulation, int halfedge) {
-    const auto& length = triangulation.lengths[halfedge / 3];
-    const double side = length[halfedge % 3], p = length[next(halfedge) % 3], q = length[prev(halfedge) % 3];
-    // p^2 - l^2 as a product: no cancellation of squares in a needle.
-    return {2 * area_from_lengths(side, p, q), 0.5 * ((p - side) * (p + side) + q * q), p * q};
-}
 
 /// sin(alpha + beta) >= 0, without a division, so that triangles without area take part.
 bool is_delaunay(const IntrinsicTriangulation& triangulation, int halfedge, int twin) {
@@ -52,7 +28,7 @@ bool is_delaunay(const IntrinsicTriangulation& triangulation, int halfedge, int 
 Eigen::Vector2d apex(const IntrinsicTriangulation& triangulation, int halfedge) {
     const auto& length = triangulation.lengths[halfedge / 3];
     const double side = length[halfedge % 3], far = length[next(halfedge) % 3], near = length[prev(halfedge) % 3];
-    return {0.5 * (side + (near - far) * (near + far) / side), 2 * area_from_lengths(side, far, near) / side};
+    return {0.5 * (side + (near - far) * (near + far) / side), 2 * triangle_area(length) / side};
 }
 
 void join(IntrinsicTriangulation& triangulation, int a, int b) {
@@ -94,6 +70,25 @@ void flip(IntrinsicTriangulation& triangulation, int h, int t) {
 
 }  // namespace
 
+double triangle_area(const std::array<double, 3>& lengths) {
+    auto [a, b, c] = lengths;
+    if (a < b)
+        std::swap(a, b);
+    if (a < c)
+        std::swap(a, c);
+    if (b < c)
+        std::swap(b, c);
+    const double square = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c));
+    return square > 0 ? 0.25 * std::sqrt(square) : 0;
+}
+
+OppositeAngle opposite_angle(const IntrinsicTriangulation& triangulation, int halfedge) {
+    const auto& length = triangulation.lengths[halfedge / 3];
+    const double side = length[halfedge % 3], p = length[next(halfedge) % 3], q = length[prev(halfedge) % 3];
+    // p^2 - l^2 as a product: no cancellation of squares in a needle.
+    return {2 * triangle_area(length), 0.5 * ((p - side) * (p + side) + q * q), p * q};
+}
+
 IntrinsicTriangulation intrinsic_triangulation(const Surface& surface) {
     IntrinsicTriangulation result;
     result.faces = surface.faces();
@@ -109,6 +104,12 @@ IntrinsicTriangulation intrinsic_triangulation(const Surface& surface) {
 }
 
 int make_delaunay(IntrinsicTriangulation& triangulation) {
+    std::vector<int> all(triangulation.twin.size());
+    std::iota(all.begin(), all.end(), 0);
+    return make_delaunay(triangulation, all);
+}
+
+int make_delaunay(IntrinsicTriangulation& triangulation, std::span<const int> seeds) {
     const int halfedges = static_cast<int>(triangulation.twin.size());
     std::vector<int> queue;
     std::vector<char> queued(halfedges, 0);
@@ -119,9 +120,9 @@ int make_delaunay(IntrinsicTriangulation& triangulation) {
         queued[h] = 1;
         queue.push_back(h);
     };
-    for (int h = halfedges - 1; h >= 0; --h)
-        if (triangulation.twin[h] != none && h < triangulation.twin[h])
-            push(h);
+    for (std::size_t i = seeds.size(); i-- > 0;)
+        if (const int h = seeds[i], t = triangulation.twin[h]; t != none)
+            push(std::min(h, t));
 
     // Flips end by theory (the Dirichlet energy falls with each); the cap only guards against rounding.
     const long long cap = 100LL * halfedges + 1000;
@@ -174,7 +175,7 @@ Eigen::VectorXd lumped_areas(const IntrinsicTriangulation& triangulation, int ve
     Eigen::VectorXd areas = Eigen::VectorXd::Zero(vertex_count);
     for (std::size_t f = 0; f < triangulation.faces.size(); ++f) {
         const auto& length = triangulation.lengths[f];
-        const double third = area_from_lengths(length[0], length[1], length[2]) / 3;
+        const double third = triangle_area(length) / 3;
         for (int v : triangulation.faces[f]) areas[v] += third;
     }
     return areas;

@@ -1,17 +1,10 @@
 #include "solve/patch_space.h"
 
 #include <algorithm>
-
-#include "mesh/intrinsic.h"
+#include <map>
 
 namespace pvg {
 namespace {
-
-Eigen::SparseMatrix<double> delaunay_stiffness(const Surface& surface) {
-    IntrinsicTriangulation triangulation = intrinsic_triangulation(surface);
-    make_delaunay(triangulation);
-    return cotan_stiffness(triangulation, surface.vertex_count());
-}
 
 std::vector<int> coupled_partners(const Domain& domain) {
     std::vector<int> partner(domain.surface.vertex_count(), none);
@@ -23,12 +16,51 @@ std::vector<int> coupled_partners(const Domain& domain) {
     return partner;
 }
 
+/// A couple's vertices hang on one another, through others where curves cross.
+int coupled_root(const std::vector<int>& follows, int v) {
+    while (follows[v] != none) v = follows[v];
+    return v;
+}
+
 }  // namespace
+
+BorderConditions border_conditions(const Domain& domain) {
+    const Surface& surface = domain.surface;
+    BorderConditions border{domain.dirichlet, std::vector<int>(surface.vertex_count(), none)};
+    if (domain.couplings.empty())
+        return border;
+    std::vector<int> follows(surface.vertex_count(), none);
+    for (const Coupling& coupling : domain.couplings)
+        if (coupling.left != coupling.right)
+            follows[coupling.left] = coupling.right;
+    const auto coupled = [&](int v, int w) { return v != w && coupled_root(follows, v) == coupled_root(follows, w); };
+    std::map<std::pair<int, int>, int> by_parents;
+    for (int h = 0; h < surface.halfedge_count(); ++h) {
+        if (surface.twin(h) != none)
+            continue;
+        const int from = surface.origin(h), to = surface.target(h);
+        const int parent_from = domain.vertex_parent[from], parent_to = domain.vertex_parent[to];
+        const auto found = by_parents.find({parent_to, parent_from});
+        if (found == by_parents.end()) {
+            by_parents[{parent_from, parent_to}] = from;
+            continue;
+        }
+        // At its ends the Poisson curve is one vertex, or meets a diffusion curve with a value on each side; a diffusion curve's
+        // own edges have such ends only.
+        const int other_from = found->second, other_to = surface.target(surface.outgoing(other_from));
+        const auto faces = [&](int v, int w) { return v == w || coupled(v, w) || (domain.dirichlet[v] && domain.dirichlet[w]); };
+        if (faces(from, other_to) && faces(to, other_from) && (coupled(from, other_to) || coupled(to, other_from))) {
+            border.other_side[from] = other_from;
+            border.other_side[other_from] = from;
+        }
+    }
+    return border;
+}
 
 PatchSpace::PatchSpace(const Domain& domain_, const Knots& knots_, const Voronoi& voronoi)
     : domain(domain_),
       knots(knots_),
-      S(delaunay_stiffness(domain.surface)),
+      S(surface_stiffness(domain.surface, border_conditions(domain))),
       partner(coupled_partners(domain)),
       right(domain.surface.vertex_count(), none),
       log_map(domain.surface, partner) {

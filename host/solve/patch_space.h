@@ -7,11 +7,15 @@
 #include <Eigen/SparseCore>
 
 #include "curves/domain.h"
+#include "mesh/border_points.h"
 #include "solve/knots.h"
 #include "solve/log_map.h"
 #include "solve/voronoi.h"
 
 namespace pvg {
+
+/// Which border edges of a domain have given ends, and which pairs of them are the two sides of a sharp Poisson curve.
+BorderConditions border_conditions(const Domain& domain);
 
 /// Read-only once made. V vertices, N cells. The domain and the knots must outlive it.
 class PatchSpace {
@@ -20,7 +24,7 @@ public:
 
     const Domain& domain;
     const Knots& knots;
-    Eigen::SparseMatrix<double> S;     ///< V x V stiffness on the intrinsic Delaunay triangulation of the whole domain
+    Eigen::SparseMatrix<double> S;     ///< V x V stiffness of the whole domain (mesh/border_points.h): no negative weights
     std::vector<int> partner;          ///< V: the next copy of a vertex on sharp Poisson curves, in a ring, or none
     std::vector<int> right;            ///< V: the copy that a left one's jump stands against, or none
     std::vector<int> neighbour_first;  ///< N + 1: cells that touch or that an edge of S or a sharp Poisson curve joins, ascending

@@ -9,7 +9,7 @@
 
 #include <Eigen/Geometry>
 
-#include "cpu_reference/delaunay_flips.h"
+#include "cpu_reference/border_refinement.h"
 #include "reference/polar_mesh.h"
 
 namespace pvg {
@@ -72,6 +72,44 @@ TEST(FiniteElements, BoundedByItsBorderWithoutSources) {
     const Eigen::MatrixXd u = solve_finite_elements(problem);
     EXPECT_GE(u.minCoeff(), -1e-12);
     EXPECT_LE(u.maxCoeff(), 1 + 1e-12);
+}
+
+TEST(FiniteElements, BoundedWithAFreeBorderToo) {
+    // The same slivers held in a few places only: border sides face obtuse angles, and get vertices of their own.
+    FemProblem problem = shaken_square(16, 0.5, 0.05, 2);
+    for (auto& point : problem.points) point.x() += 8 * point.y();
+    for (int v : {0, 5, 40, 41, 150, 151, 152, 200, 288}) problem.dirichlet.emplace_back(v, row(v % 2));
+    const Eigen::MatrixXd u = solve_finite_elements(problem);
+    EXPECT_GE(u.minCoeff(), -1e-12);
+    EXPECT_LE(u.maxCoeff(), 1 + 1e-12);
+    const Eigen::MatrixXd given = solve_finite_elements(problem, FemTriangulation::as_given);
+    EXPECT_TRUE(given.minCoeff() < -1e-3 || given.maxCoeff() > 1 + 1e-3) << "the fixture is too good to show anything";
+    // Energies are those of the finer triangles: an error that is the solution itself is 100 %.
+    EXPECT_NEAR(compare_fields(problem, u, 2 * u)[0].h1, 100, 1e-9);
+}
+
+TEST(BorderRefinement, ObtuseTriangleByHand) {
+    LengthMesh mesh = make_length_mesh({{0, 0, 0}, {4, 0, 0}, {1, 1, 0}}, {{0, 1, 2}});
+    const std::vector<AddedVertex> added = refine_border(mesh, {{}, {false, false, false}});
+    ASSERT_EQ(added.size(), 1u);
+    EXPECT_EQ(added[0].from, 0);
+    EXPECT_EQ(added[0].to, 1);
+    EXPECT_NEAR(added[0].at, 0.25, 1e-14);
+    ASSERT_EQ(mesh.vertices.size(), 2u);
+    double area = 0;
+    for (const auto& l : mesh.lengths) {
+        const double s = (l[0] + l[1] + l[2]) / 2;
+        area += std::sqrt(s * (s - l[0]) * (s - l[1]) * (s - l[2]));
+    }
+    EXPECT_NEAR(area, 2, 1e-12);
+    FemProblem problem;
+    problem.points = {{0, 0, 0}, {4, 0, 0}, {1, 1, 0}};
+    problem.faces = {{0, 1, 2}};
+    problem.dirichlet = {{0, row(0)}, {2, row(1)}};
+    // Vertex 1: weights 1/8 to the corner and 1/32 to vertex 0.
+    EXPECT_NEAR(solve_finite_elements(problem)(1, 0), 0.8, 1e-13);
+    mesh = make_length_mesh({{0, 0, 0}, {4, 0, 0}, {1, 1, 0}}, {{0, 1, 2}});
+    EXPECT_TRUE(refine_border(mesh, {{}, {true, true, false}}).empty()) << "between held ends the value is linear";
 }
 
 TEST(FiniteElements, RotationPermutationAndScaleChangeNothing) {
