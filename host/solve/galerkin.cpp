@@ -1,5 +1,7 @@
 #include "solve/galerkin.h"
 
+#include "solve/bounds.h"
+
 namespace pvg {
 namespace {
 
@@ -91,6 +93,8 @@ int minimise_energy(const PatchSpace& space, const Table& table, const System& s
             direction.col(c) = preconditioned.col(c) + (size[c] > 0 ? next[c] / size[c] : 0) * direction.col(c);
         size = next;
     }
+    if (options.bounded)
+        keep_between_bounds(space.domain, space.knots, lambda);
     return steps;
 }
 

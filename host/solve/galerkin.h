@@ -18,6 +18,7 @@ namespace pvg {
 struct GalerkinOptions {
     int max_steps = 12;
     double reduction = 1e-5;  ///< a channel rests when its residual, in the norm of K^-1, has fallen by this factor
+    bool bounded = true;      ///< between the curves' values where there is neither source nor jump (solve/bounds.h)
 };
 
 /// Improves lambda (N x C) in place, for the values that the domain holds now; fixed knots and jumps stay. Returns the steps

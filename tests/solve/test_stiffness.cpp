@@ -6,50 +6,14 @@
 
 #include "fixtures/domains.h"
 #include "fixtures/fem.h"
-#include "solve/basis_problems.h"
+#include "solve/bad_domains.h"
 #include "solve/patch_space.h"
 
 namespace pvg {
 namespace {
 
+using fixtures::bad_domains;
 using Matrix = Eigen::SparseMatrix<double>;
-
-/// The domain squeezed in y and sheared: the same chains and numbers, obtuse triangles everywhere.
-Domain squeezed(Domain domain, double factor) {
-    domain.surface = fixtures::transformed(
-        domain.surface, [&](const Point& p) { return Point(p.x() + 0.5 * p.y(), factor * p.y(), 0.1 * std::sin(4 * p.x())); });
-    return domain;
-}
-
-/// The left bank of each diffusion curve is open: natural there.
-Domain half_open(Domain domain) {
-    const Surface& s = domain.surface;
-    for (int v = 0; v < s.vertex_count(); ++v)
-        if (domain.dirichlet[v] && s.is_border_vertex(v) && !domain.feature[v] &&
-            s.point(s.target(s.outgoing(v))).x() > s.point(v).x()) {
-            domain.dirichlet[v] = 0;
-            domain.dirichlet_value.row(v).setZero();
-        }
-    return domain;
-}
-
-struct Named {
-    const char* name;
-    Domain domain;
-};
-
-std::vector<Named> domains() {
-    std::vector<Named> all;
-    all.push_back({"slit square", fixtures::slit_square(3000).domain});
-    all.push_back({"slit square, open banks", half_open(fixtures::slit_square(3000).domain)});
-    all.push_back({"slit square, squeezed, open banks", half_open(squeezed(fixtures::slit_square(3000).domain, 0.07))});
-    all.push_back({"three curves, not Delaunay", fixtures::three_curves(50, true, false)});
-    all.push_back({"three curves, squeezed, open banks", half_open(squeezed(fixtures::three_curves(50, true, false), 0.1))});
-    all.push_back({"crossings and jump", fixtures::crossings_and_jump(60)});
-    all.push_back({"crossings and jump, squeezed", squeezed(fixtures::crossings_and_jump(60), 0.15)});
-    all.push_back({"sphere band", fixtures::sphere_band(3000).domain});
-    return all;
-}
 
 /// One unknown for both copies on a sharp Poisson curve.
 Matrix merged(const Domain& domain, const Matrix& S) {
@@ -82,7 +46,7 @@ Negative negative_weights(const Domain& domain, const Matrix& S) {
 
 TEST(Stiffness, HasNoNegativeWeight) {
     int acting = 0;
-    for (const auto& [name, domain] : domains()) {
+    for (const auto& [name, domain] : bad_domains()) {
         IntrinsicTriangulation plain = intrinsic_triangulation(domain.surface);
         make_delaunay(plain);
         const int vertices = domain.surface.vertex_count();
@@ -99,7 +63,7 @@ TEST(Stiffness, HasNoNegativeWeight) {
 }
 
 TEST(Stiffness, TheOracleAgrees) {
-    for (const auto& [name, domain] : domains()) {
+    for (const auto& [name, domain] : bad_domains()) {
         const Matrix S = surface_stiffness(domain.surface, border_conditions(domain));
         const Eigen::VectorXd u = fixtures::fem_solution(domain, S);
         const Eigen::VectorXd truth = solve_finite_elements(fixtures::fem_problem(domain)).col(0);
@@ -111,7 +75,7 @@ TEST(Stiffness, TheOracleAgrees) {
 
 TEST(Stiffness, TheOraclesEnergyAgrees) {
     // Without sources the truth's energy is known from the same matrix; errors are 0 where values are given.
-    for (auto& [name, domain] : domains()) {
+    for (auto& [name, domain] : bad_domains()) {
         const Matrix S = surface_stiffness(domain.surface, border_conditions(domain));
         const FemProblem problem = fixtures::fem_problem(domain);
         Eigen::VectorXd e(S.rows()), d(S.rows());
@@ -130,7 +94,7 @@ TEST(Stiffness, TheOraclesEnergyAgrees) {
 }
 
 TEST(Stiffness, SolutionsWithoutSourcesStayBetweenTheirValues) {
-    for (auto& [name, domain] : domains()) {
+    for (auto& [name, domain] : bad_domains()) {
         domain.sources.clear();
         for (Coupling& c : domain.couplings) c.jump.setZero();
         const Eigen::VectorXd u = fixtures::fem_solution(domain, surface_stiffness(domain.surface, border_conditions(domain)));
