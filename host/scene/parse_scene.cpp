@@ -199,12 +199,14 @@ Scene parse_document(const JsonNode& root, const std::filesystem::path& file) {
     }
     if (root.has("basis")) {
         const JsonNode basis = root.member("basis");
-        basis.check_object({}, {"kind", "rings"});
+        basis.check_object({}, {"kind", "rings", "normalize"});
         constexpr BasisKind kinds[] = {BasisKind::local, BasisKind::green, BasisKind::exact};
         if (basis.has("kind"))
             scene.basis = kinds[basis.member("kind").choice({"local", "green", "exact"})];
         if (basis.has("rings"))
             scene.basis_rings = basis.member("rings").integer(1, 16);
+        if (basis.has("normalize"))
+            scene.basis_normalize = basis.member("normalize").boolean();
     }
 
     const JsonNode layers = root.member("layers");

@@ -109,6 +109,7 @@ struct Scene {
     double knot_grading = 0.25;
     BasisKind basis = BasisKind::local;
     int basis_rings = 2;
+    bool basis_normalize = true;  ///< green: rows divided by their sum
     std::vector<Layer> layers;
     nlohmann::json document;  ///< the file as read (after --set), for embedding
 };

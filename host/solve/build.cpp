@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "mesh/subdivide.h"
-#include "solve/basis.h"
-#include "solve/galerkin.h"
+#include "solve/field.h"
 #include "solve/normals.h"
 
 namespace pvg {
@@ -131,23 +130,13 @@ void fill_normals(Build& b, const MeshInput& mesh) {
     b.program.corner_first = std::move(first);
 }
 
-std::vector<float> coefficients(const Eigen::MatrixXd& lambda, const Domain& domain) {
-    std::vector<float> all;
-    all.reserve((lambda.rows() + domain.sources.size()) * domain.channels);
-    for (Eigen::Index j = 0; j < lambda.rows(); ++j)
-        for (int c = 0; c < domain.channels; ++c) all.push_back(static_cast<float>(lambda(j, c)));
-    for (const SourceColumn& source : domain.sources)
-        for (int c = 0; c < domain.channels; ++c) all.push_back(static_cast<float>(source.value[c]));
-    return all;
-}
-
 }  // namespace
+
+BasisChoice basis_choice(const Scene& scene) { return {scene.basis, scene.basis_rings, scene.basis_normalize}; }
 
 Build build(const Scene& scene, const MeshInput& mesh, const BuildOptions& options, Warnings& warnings) {
     Build b;
     StageClock clock(options, b);
-    if (scene.basis != BasisKind::local)
-        throw Error(ErrorKind::bad_input, scene.file.string() + ": /basis/kind: this version evaluates the basis \"local\" only");
 
     clock.enter("curves");
     b.welded = weld(mesh.points, mesh.faces, warnings);
@@ -175,16 +164,17 @@ Build build(const Scene& scene, const MeshInput& mesh, const BuildOptions& optio
         Voronoi voronoi = geodesic_voronoi(domain, knots);
         clock.enter("system");
         System system(domain, knots, voronoi);
-        Eigen::MatrixXd lambda = system.solve(domain);
+        Eigen::MatrixXd cell_lambda = system.solve(domain);
         clock.enter("basis");
-        Field field;
         const PatchSpace space(domain, knots, voronoi);
-        field.table = local_basis(space, {.rings = scene.basis_rings, .threads = options.threads});
+        Field field;
+        field.table = basis_table(space, voronoi, basis_choice(scene), {options.threads, options.on_progress});
         clock.enter("system");
-        minimise_energy(space, field.table, system, {}, lambda);
-        field.coefficients = coefficients(lambda, domain);
+        Coefficients solved = solve_coefficients(space, voronoi, system, field.table, basis_choice(scene), cell_lambda);
+        field.coefficients = std::move(solved.values);
         b.program.fields.push_back(std::move(field));
-        b.domains.push_back({std::move(knots), std::move(voronoi), std::move(system), std::move(lambda)});
+        b.domains.push_back(
+            {std::move(knots), std::move(voronoi), std::move(system), std::move(cell_lambda), std::move(solved.lambda)});
     }
 
     clock.enter("basis");

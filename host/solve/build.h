@@ -13,6 +13,7 @@
 #include "pvg/program.h"
 #include "pvg/status.h"
 #include "scene/scene.h"
+#include "solve/field.h"
 #include "solve/knots.h"
 #include "solve/system.h"
 #include "solve/voronoi.h"
@@ -30,6 +31,9 @@ struct BuildOptions {
     int threads = 0;  ///< 0: all cores; the result does not depend on it
     /// Called at the start of each stage with its name ("curves", "knots", "voronoi", "system", "basis").
     std::function<void(const std::string&)> on_stage;
+    /// Within the stage "basis" where that takes long: the part of a domain's columns that is done, 0 to 1. Called, as on_stage,
+    /// on the thread that builds.
+    std::function<void(double)> on_progress = {};
 };
 
 /// One domain's solution.
@@ -37,7 +41,8 @@ struct SolvedDomain {
     Knots knots;
     Voronoi voronoi;
     System system;
-    Eigen::MatrixXd lambda;  ///< knots x channels: the control coefficients
+    Eigen::MatrixXd cell_lambda;  ///< knots x channels: control coefficients of the cell system
+    Eigen::MatrixXd lambda;       ///< knots x channels: those that the program evaluates with (solve/field.h)
 };
 
 /// Everything from the welded input to the evaluators' program.
@@ -53,6 +58,9 @@ struct Build {
     std::vector<Face> corner_normal;  ///< per output face and corner: shading normal of the program, or none: nothing moves there
     std::vector<std::pair<std::string, double>> seconds;  ///< per stage, in order
 };
+
+/// The scene's own basis.
+BasisChoice basis_choice(const Scene& scene);
 
 /// Throws Error(bad_input) that names the scene's file and place.
 Build build(const Scene& scene, const MeshInput& mesh, const BuildOptions& options, Warnings& warnings);

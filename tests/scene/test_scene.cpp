@@ -36,6 +36,7 @@ TEST(Scene, HasItsDefaults) {
     EXPECT_EQ(scene.knot_grading, 0.25);
     EXPECT_EQ(scene.basis, BasisKind::local);
     EXPECT_EQ(scene.basis_rings, 2);
+    EXPECT_TRUE(scene.basis_normalize);
     ASSERT_EQ(scene.layers.size(), 1u);
     EXPECT_EQ(scene.layers[0].blend, BlendMode::over);
     EXPECT_FALSE(scene.layers[0].on_displaced);
@@ -44,7 +45,7 @@ TEST(Scene, HasItsDefaults) {
 TEST(Scene, ReadsEveryTopLevelKey) {
     const Scene scene =
         parse(R"({"pvg": 1, "$schema": "scene.schema.json", "mesh": {"file": "../m.glb", "select": 2, "max_edge": 0.01},
-        "length_unit": "mesh", "color_space": "oklab", "knots": {"spacing": 0.02, "grading": 0.5}, "basis": {"kind": "green", "rings": 5},
+        "length_unit": "mesh", "color_space": "oklab", "knots": {"spacing": 0.02, "grading": 0.5}, "basis": {"kind": "green", "rings": 5, "normalize": false},
         "layers": [{"name": "a", "on": "base", "blend": "add", "primitives": []}, {"blend": "multiply", "primitives": []}]})");
     EXPECT_EQ(scene.mesh_select, "2");
     EXPECT_EQ(scene.max_edge, 0.01);
@@ -54,6 +55,7 @@ TEST(Scene, ReadsEveryTopLevelKey) {
     EXPECT_EQ(scene.knot_grading, 0.5);
     EXPECT_EQ(scene.basis, BasisKind::green);
     EXPECT_EQ(scene.basis_rings, 5);
+    EXPECT_FALSE(scene.basis_normalize);
     EXPECT_EQ(scene.layers[0].name, "a");
     EXPECT_EQ(scene.layers[0].blend, BlendMode::add);
     EXPECT_EQ(scene.layers[1].blend, BlendMode::multiply);

@@ -62,6 +62,10 @@ const BadScene bad_scenes[] = {
      R"(/basis/rings: expected a whole number from 1 to 16, found 0)"},
     {R"([{"op": "add", "path": "/basis", "value": {"rings": 1.5}}])",
      R"(/basis/rings: expected a whole number from 1 to 16, found 1.5)"},
+    {R"([{"op": "add", "path": "/basis", "value": {"normalize": "yes"}}])",
+     R"(/basis/normalize: expected true or false, found "yes")"},
+    {R"([{"op": "add", "path": "/basis", "value": {"normalise": true}}])",
+     R"(/basis/normalise: unknown key, did you mean "normalize"?)"},
     // The mesh
     {R"([{"op": "replace", "path": "/mesh", "value": "m.glb"}])", R"(/mesh: expected an object, found "m.glb")"},
     {R"([{"op": "remove", "path": "/mesh/file"}])", R"(/mesh: expected the key "file", found none)"},

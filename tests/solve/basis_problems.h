@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -364,6 +365,65 @@ inline Domain crossings_and_jump(int n) {
     for (int v = 0; v < domain.surface.vertex_count(); ++v)
         if ((domain.surface.point(v) - crossing).norm() < 1e-9)
             domain.feature[v] = 1;
+    return domain;
+}
+
+/// The shortest chain of edges between the vertices nearest to two points.
+inline std::vector<int> edge_path(const Surface& surface, const Point& from, const Point& to) {
+    const int start = nearest_vertex(surface, from), end = nearest_vertex(surface, to);
+    std::vector<double> distance(surface.vertex_count(), 1e300);
+    std::vector<int> before(surface.vertex_count(), none);
+    std::set<std::pair<double, int>> queue{{0, start}};
+    distance[start] = 0;
+    while (!queue.empty()) {
+        const int v = queue.begin()->second;
+        queue.erase(queue.begin());
+        int h = surface.outgoing(v);
+        do {  // closed surfaces only
+            const int w = surface.target(h);
+            if (const double d = distance[v] + surface.length(h); d < distance[w] - 1e-12) {
+                queue.erase({distance[w], w});
+                distance[w] = d;
+                before[w] = v;
+                queue.insert({d, w});
+            }
+            h = surface.twin(Surface::prev(h));
+        } while (h != surface.outgoing(v));
+    }
+    std::vector<int> path{end};
+    while (path.back() != start) path.push_back(before[path.back()]);
+    std::reverse(path.begin(), path.end());
+    return path;
+}
+
+/// The whole unit sphere with three slit diffusion curves, no source.
+inline Domain sphere_curves(int frequency) {
+    const Surface sphere = icosphere(frequency);
+    std::vector<Chain> chains(3);
+    chains[0].vertices = edge_path(sphere, {0.9, 0.1, 0.4}, {0.2, 0.95, 0.2});
+    chains[1].vertices = edge_path(sphere, {-0.7, 0.2, 0.7}, {-0.5, -0.6, 0.6});
+    chains[2].vertices = edge_path(sphere, {0.5, -0.6, -0.6}, {-0.3, 0.3, -0.9});
+    chains[0].left = [](const Point& p) { return 1 - 0.5 * p.x(); };
+    chains[0].right = [](const Point& p) { return -0.4 + 0.3 * p.x(); };
+    chains[1].left = [](const Point&) { return 0.2; };
+    chains[1].right = [](const Point& p) { return 0.8 - p.y(); };
+    chains[2].left = [](const Point&) { return -0.6; };
+    chains[2].right = [](const Point& p) { return 0.5 * std::cos(3 * p.x()); };
+    return slit_domain(sphere, chains);
+}
+
+/// A closed sharp Poisson curve (J = 1 + x, left inside) and a diffusion curve outside it, with a balanced source inside: nothing
+/// but the jump holds the inside.
+inline Domain island(int n) {
+    const BentSquare square(n);
+    std::vector<Chain> chains(2);
+    chains[0].vertices = square.line({{0.3, 0.3}, {0.7, 0.3}, {0.7, 0.7}, {0.3, 0.7}, {0.3, 0.3}});
+    chains[0].jump = [](const Point& p) { return 1 + p.x(); };
+    chains[1].vertices = square.line({{0.1, 0.1}, {0.9, 0.1}});
+    chains[1].left = [](const Point& p) { return p.x(); };
+    chains[1].right = [](const Point&) { return 0.0; };
+    Domain domain = square.domain(chains);
+    add_disc_source(domain, {0.5, 0.5, 0}, 0.08, 0.13, -60);
     return domain;
 }
 
