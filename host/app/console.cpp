@@ -44,15 +44,31 @@ void Console::warn(const Warnings& warnings) {
 void Console::fail(std::string_view text) { line("pvg: ", text); }
 
 void Console::stage(int number, int count, std::string_view name) {
+    stage_ = number;
+    stages_ = count;
+    stage_name_ = name;
+    show_stage(0);
+}
+
+void Console::progress(double part) {
+    constexpr double pause = 0.1;  // seconds between two pictures of one stage
+    if (now() - shown_ >= pause)
+        show_stage(part);
+}
+
+void Console::show_stage(double part) {
     if (loudness_ == Loudness::quiet || !terminal_ || now() - started_ < 1)
         return;
     constexpr int width = 30;
-    const int filled = count > 0 ? width * number / count : width;
+    const int filled = stages_ > 0 ? static_cast<int>(width * (stage_ + part) / stages_) : width;
     std::fprintf(stderr, "\r\033[K[");
     for (int i = 0; i < width; ++i) std::fputc(i < filled ? '#' : '.', stderr);
-    std::fprintf(stderr, "] %d/%d %.*s", number + 1, count, static_cast<int>(name.size()), name.data());
+    std::fprintf(stderr, "] %d/%d %s", stage_ + 1, stages_, stage_name_.c_str());
+    if (part > 0)
+        std::fprintf(stderr, " %.0f %%", 100 * part);
     std::fflush(stderr);
     line_shown_ = true;
+    shown_ = now();
 }
 
 void Console::stages_done() { clear_line(); }

@@ -24,14 +24,19 @@ public:
 
     /// A stage begins. On a terminal, after the first second, one line shows what is going on; in a pipe nothing.
     void stage(int number, int count, std::string_view name);
+    /// The part of the stage that is done, 0 to 1, shown with it.
+    void progress(double part);
     void stages_done();
 
 private:
+    void show_stage(double part);
     void clear_line();
     Loudness loudness_;
     bool terminal_;
     bool line_shown_ = false;
-    double started_ = 0;
+    double started_ = 0, shown_ = 0;
+    int stage_ = 0, stages_ = 0;
+    std::string stage_name_;
 };
 
 }  // namespace pvg::app

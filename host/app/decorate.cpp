@@ -88,7 +88,7 @@ int decorate(const DecorateOptions& options, Console& console) {
         throw Error(ErrorKind::usage, "-o: expected a name that ends in .glb, found \"" + options.out.string() + "\"");
     const DeviceChoice choice = parse_device(options.device);
     Warnings warnings;
-    Project project = open_project(options.scene, options.assignments, options.threads, console, warnings);
+    Project project = open_project(options.scene, {options.assignments, options.basis, options.threads}, console, warnings);
 
     console.stage(7, 9, "evaluate");
     if (options.no_displace)

@@ -20,9 +20,15 @@ struct Project {
     double read_seconds = 0;
 };
 
-/// Reads the scene and its mesh and builds everything up to the program. Throws Error.
-Project open_project(const std::filesystem::path& scene, const std::vector<std::string>& assignments, int threads,
-                     Console& console, Warnings& warnings);
+struct ProjectOptions {
+    std::vector<std::string> assignments;  ///< --set
+    std::string basis;                     ///< --basis: "local", "green" or "exact"; empty: the scene's
+    int threads = 0;
+};
+
+/// Reads the scene and its mesh and builds everything up to the program. The scene (and the document that travels in an output)
+/// has the basis that was asked for. Throws Error.
+Project open_project(const std::filesystem::path& scene, const ProjectOptions& options, Console& console, Warnings& warnings);
 
 /// Writes a text file atomically (temporary file beside it, then rename). Throws Error(output).
 void write_text(const std::filesystem::path& file, const std::string& text);

@@ -15,6 +15,7 @@ struct DecorateOptions {
     std::filesystem::path out;
     std::string device = "auto";
     std::vector<std::string> assignments;  ///< --set
+    std::string basis;                     ///< instead of the scene's; empty: the scene's
     std::optional<std::filesystem::path> report;
     bool fields = false;
     bool no_displace = false;
@@ -26,6 +27,8 @@ struct CheckOptions {
     std::filesystem::path scene;
     std::string device = "auto";
     std::vector<std::string> assignments;
+    std::string basis;  ///< instead of the scene's; empty: the scene's
+    bool all_bases = false;
     std::string tolerance = "0.1,1,5";
     bool json = false;
     int threads = 0;

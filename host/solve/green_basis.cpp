@@ -24,7 +24,7 @@ GreenBasis::GreenBasis(const PatchSpace& space, const Voronoi& voronoi) : space_
     spread_charges(voronoi);
 }
 
-/// A piece of a cell gives each corner of its face a third of its area.
+/// A piece of a cell gives each corner of its face a third of its area; in small cells, the cell's own corners all of it.
 void GreenBasis::spread_charges(const Voronoi& voronoi) {
     const int n = cells();
     const Domain& domain = space_.domain;
@@ -32,10 +32,20 @@ void GreenBasis::spread_charges(const Voronoi& voronoi) {
     cell_weight_.assign(n, 0);
     std::vector<Eigen::Triplet<double>> entries;
     for (const CellPiece& piece : voronoi.pieces) area[piece.cell] += piece.area;
-    for (const CellPiece& piece : voronoi.pieces)
-        if (!point_charge(piece.cell) && area[piece.cell] > 0)
-            for (int v : domain.surface.face(piece.face))
-                entries.emplace_back(v, piece.cell, piece.area / (3 * area[piece.cell]));
+    for (const CellPiece& piece : voronoi.pieces) {
+        if (point_charge(piece.cell) || !(area[piece.cell] > 0))
+            continue;
+        const double part = piece.area / area[piece.cell];
+        const bool small = space_.cell_first[piece.cell + 1] - space_.cell_first[piece.cell] < 3;
+        const auto takes_part = [&](int v) { return !small || voronoi.cell[v] == piece.cell; };
+        const Face& face = domain.surface.face(piece.face);
+        const auto corners = std::count_if(face.begin(), face.end(), takes_part);
+        for (int v : face)
+            if (takes_part(v))
+                entries.emplace_back(v, piece.cell, part / static_cast<double>(corners));
+        if (corners == 0)
+            entries.emplace_back(space_.knots.vertex[piece.cell], piece.cell, part);
+    }
     for (int c = 0; c < n; ++c)
         if (point_charge(c) || !(area[c] > 0))
             entries.emplace_back(space_.knots.vertex[c], c, 1.0);
@@ -55,11 +65,10 @@ void GreenBasis::spread_charges(const Voronoi& voronoi) {
                 component_area[component] > 0 ? area[c] / component_area[component] : 1.0 / component_cells[component];
 }
 
-/// At a slit's knot the flux enters; of a cell that is one vertex finite elements know no more than that vertex.
+/// At a slit's knot it is a flux that enters.
 bool GreenBasis::point_charge(int cell) const {
     const int knot = space_.knots.vertex[cell];
-    return space_.domain.dirichlet[knot] || space_.partner[knot] != none ||
-           space_.cell_first[cell + 1] - space_.cell_first[cell] < 2;
+    return space_.domain.dirichlet[knot] || space_.partner[knot] != none;
 }
 
 /// Adds amount * d_j.

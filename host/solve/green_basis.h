@@ -10,8 +10,9 @@
 // it goes:
 // - In a cell, over its pieces (the paper's cell average): each gives the corners of its face a third of its area. Cells together
 //   then give a vertex the integral of its hat function, and a Laplacian that is constant over several cells is exact. (With
-//   d_j = a chi_j / A_j, whole vertices, charges are off by the ratio of exact and lumped cell areas.)
-// - At a Dirichlet vertex, at a copy on a sharp Poisson curve, and where the cell is a single vertex: at that vertex, d_j = e_y.
+//   d_j = a chi_j / A_j, whole vertices, charges are off by the ratio of exact and lumped cell areas.) Cells of one or two
+//   vertices are as small as the mesh, or strips of larger faces: they keep their charge to their own vertices.
+// - At a Dirichlet vertex and at a copy on a sharp Poisson curve: at that vertex, d_j = e_y.
 // The two copies on a sharp Poisson curve are knots of the natural problem on their own side: what flows out of one flows into
 // the other, and lambda_left = lambda_right + J stands in both sides' means. So S need not couple them.
 //

@@ -53,7 +53,8 @@ TEST_F(Command, HelpAndVersion) {
 TEST_F(Command, WrongUsageIsExitTwo) {
     for (const char* line : {"", "frobnicate", "decorate", "decorate s.pvg.json", "decorate s.pvg.json -o out.glb --no-such-flag",
                              "make", "make plane -o p.glb --vertices x", "make blob -o p.glb", "check s.pvg.json --tolerance 1,2",
-                             "decorate s.pvg.json -o out.glb --device moon", "decorate s.pvg.json -o out.obj"}) {
+                             "decorate s.pvg.json -o out.glb --device moon", "decorate s.pvg.json -o out.obj",
+                             "decorate s.pvg.json -o out.glb --basis fem", "check s.pvg.json --basis"}) {
         make_plane();
         write_scene(scene());
         const Outcome outcome = pvg(line);
@@ -127,6 +128,12 @@ TEST_F(Command, BadScenesNameThePlace) {
     bad["layers"][0]["primitives"][0]["path"].erase("snap");
     expect_refused(bad, "/layers/0/primitives/0/path/center", "surface");
     bad = scene();
+    bad["basis"]["kind"] = "greens";
+    expect_refused(bad, "/basis/kind", "\"greens\"");
+    bad = scene();
+    bad["basis"]["normalize"] = 1;
+    expect_refused(bad, "/basis/normalize", "true or false");
+    bad = scene();
     bad.erase("pvg");
     expect_refused(bad, "", "pvg");
     bad = scene();
@@ -192,6 +199,78 @@ TEST_F(Command, CheckPrintsOneJsonDocumentAndFailsPastTheTolerance) {
         R"({"kind": "poisson_region", "path": {"type": "circle", "center": [0, 0, 0], "radius": 0.1, "snap": "any"}, "rise": {"height": 0.1}})"));
     write_scene(two);
     EXPECT_EQ(pvg("check s.pvg.json --tolerance 0,0,0").exit, 1);
+}
+
+TEST_F(Command, CheckComparesEveryBasis) {
+    make_plane();
+    json two = scene();
+    two["layers"][0]["primitives"].push_back(json::parse(
+        R"({"kind": "poisson_region", "path": {"type": "circle", "center": [0, 0, 0], "radius": 0.1, "snap": "any"}, "rise": {"height": 0.1}})"));
+    write_scene(two);
+    const json result = json::parse(pvg("check s.pvg.json --json --device cpu").out);
+    EXPECT_EQ(result["basis"], "local");
+    EXPECT_TRUE(result["left_out"].empty());
+    for (const char* basis : {"local", "green", "green_raw", "exact"})
+        for (const char* key : {"mean", "max", "h1"})
+            EXPECT_TRUE(result["bases"][basis]["height"][key].is_number()) << basis << key;
+    EXPECT_GT(result["bases"]["green_raw"]["height"]["h1"].get<double>(), result["bases"]["green"]["height"]["h1"].get<double>());
+    EXPECT_GT(result["bases"]["green"]["height"]["h1"].get<double>(), result["bases"]["exact"]["height"]["h1"].get<double>());
+    // The local basis improves the cell system's coefficients.
+    EXPECT_LT(result["lambda"]["height"]["mean"].get<double>(), result["cell_lambda"]["height"]["mean"].get<double>());
+
+    // Only the scene's own basis is judged; the errors do not depend on which one that is.
+    const double between =
+        (result["bases"]["exact"]["height"]["h1"].get<double>() + result["bases"]["green"]["height"]["h1"].get<double>()) / 2;
+    const std::string tolerance = " --tolerance 100,100," + std::to_string(between);
+    EXPECT_EQ(pvg("check s.pvg.json" + tolerance).exit, 0);
+    EXPECT_EQ(pvg("check s.pvg.json --basis exact" + tolerance).exit, 0);
+    EXPECT_EQ(pvg("check s.pvg.json --basis green" + tolerance).exit, 1);
+    for (const char* basis : {"green", "exact"}) {
+        const json other = json::parse(pvg("check s.pvg.json --json --basis " + std::string(basis)).out);
+        EXPECT_EQ(other["basis"], basis);
+        EXPECT_EQ(other["bases"], result["bases"]);
+        EXPECT_EQ(other["lambda"], other["cell_lambda"]);
+        if (!other["gpu_cpu"].is_null())
+            EXPECT_TRUE(other["gpu_cpu"]["bit_identical"].get<bool>());
+    }
+    two["basis"] = {{"kind", "green"}, {"normalize", false}};
+    write_scene(two);
+    EXPECT_EQ(json::parse(pvg("check s.pvg.json --json --device cpu").out)["basis"], "green_raw");
+}
+
+TEST_F(Command, CheckSaysWhatItLeavesOut) {
+    make_plane();
+    json dense = scene();
+    dense["mesh"]["subdivide"] = 3;
+    dense["knots"] = {{"spacing", 0.003}};
+    write_scene(dense);
+    const json quick = json::parse(pvg("check s.pvg.json --json --device cpu").out);
+    ASSERT_FALSE(quick["left_out"].empty());
+    EXPECT_EQ(quick["left_out"][0]["basis"], "green");
+    EXPECT_NE(quick["left_out"][0]["reason"].get<std::string>().find("--all-bases"), std::string::npos);
+    EXPECT_FALSE(quick["bases"].contains("green"));
+    EXPECT_TRUE(quick["bases"].contains("exact"));
+    EXPECT_NE(pvg("check s.pvg.json --device cpu").out.find("--all-bases"), std::string::npos);
+    const json all = json::parse(pvg("check s.pvg.json --json --device cpu --all-bases").out);
+    EXPECT_TRUE(all["left_out"].empty());
+    EXPECT_TRUE(all["bases"].contains("green") && all["bases"].contains("green_raw"));
+}
+
+TEST_F(Command, DecorateTakesABasis) {
+    make_plane();
+    write_scene(scene());
+    for (const char* basis : {"local", "green", "exact"}) {
+        const std::string name = basis;
+        ASSERT_EQ(pvg("decorate s.pvg.json -o " + name + ".glb --device cpu --report r.json --basis " + name).exit, 0);
+        const json report = json::parse(read_all(folder / "r.json"));
+        if (name == "exact")
+            EXPECT_EQ(report["table"]["entries_per_vertex"], 4);
+        // The scene that travels in the output asks for what was made.
+        EXPECT_NE(read_all(folder / (name + ".glb")).find("\"kind\":\"" + name + "\""), std::string::npos) << name;
+    }
+    ASSERT_EQ(pvg("decorate s.pvg.json -o b.glb --device cpu --threads 3 --basis green").exit, 0);
+    EXPECT_EQ(read_all(folder / "green.glb"), read_all(folder / "b.glb"));
+    EXPECT_NE(read_all(folder / "green.glb"), read_all(folder / "local.glb"));
 }
 
 TEST_F(Command, InfoAndDevices) {

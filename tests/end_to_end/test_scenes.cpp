@@ -62,6 +62,23 @@ TEST_P(Scenes, GpuAgreesWithCpuAndBothWithFiniteElements) {
     EXPECT_TRUE(result["gpu_cpu"]["bit_identical"].get<bool>());
 }
 
+TEST_P(Scenes, ThePapersExactSumAgreesWithTheLocalBasis) {
+    std::string reason;
+    if (!prepare(reason))
+        GTEST_SKIP() << reason;
+    const json result = json::parse(pvg("check " + std::string(GetParam()) + ".pvg.json --json --basis exact").out);
+    for (const auto& [channel, error] : result["bases"]["exact"].items()) {
+        const json& local = result["bases"]["local"][channel];
+        // Both are this far from finite elements, so at most the sum from each other. What is left of the exact sum is the cell
+        // system's: its fluxes. Largest errors stand where its lambda is worst, beside border edges that face obtuse angles.
+        EXPECT_LT(error["mean"].get<double>() + local["mean"].get<double>(), 0.1) << channel;
+        EXPECT_LT(error["max"].get<double>(), 1 + 10 * result["cell_lambda"][channel]["max"].get<double>()) << channel;
+    }
+    if (result["gpu_cpu"].is_null())
+        GTEST_SKIP() << "no Vulkan device";
+    EXPECT_TRUE(result["gpu_cpu"]["bit_identical"].get<bool>());
+}
+
 TEST_P(Scenes, OutputIsValidGltf) {
     std::string reason;
     if (!prepare(reason))
