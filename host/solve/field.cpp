@@ -58,12 +58,17 @@ std::vector<float> control_values(const Eigen::MatrixXd& lambda, const Domain& d
     return all;
 }
 
-std::vector<float> vertex_values(const Eigen::MatrixXd& u, const Domain& domain, const Table& table) {
+std::vector<float> vertex_values(const Eigen::MatrixXd& u, const Eigen::MatrixXd& lambda, const PatchSpace& space,
+                                 const Table& table) {
+    const Domain& domain = space.domain;
+    const auto coupled = [&](std::uint32_t v) { return space.partner[v] != none && space.knots.knot_of_vertex[v] != none; };
     std::vector<float> all;
     all.reserve(static_cast<std::size_t>(u.size()));
     for (std::uint32_t v : table.row_vertex)
         for (int c = 0; c < domain.channels; ++c)
-            all.push_back(static_cast<float>(domain.dirichlet[v] ? domain.dirichlet_value(v, c) : u(v, c)));
+            all.push_back(static_cast<float>(domain.dirichlet[v] ? domain.dirichlet_value(v, c)
+                                             : coupled(v)        ? lambda(space.knots.knot_of_vertex[v], c)
+                                                                 : u(v, c)));
     return all;
 }
 
@@ -89,7 +94,7 @@ Coefficients solve_coefficients(const PatchSpace& space, const Voronoi& voronoi,
                                 const BasisChoice& choice, const Eigen::MatrixXd& cell_lambda) {
     Coefficients result{cell_lambda, {}};
     if (choice.kind == BasisKind::exact) {
-        result.values = vertex_values(GreenBasis(space, voronoi).sum(cell_lambda), space.domain, table);
+        result.values = vertex_values(GreenBasis(space, voronoi).sum(cell_lambda), cell_lambda, space, table);
         return result;
     }
     if (choice.kind == BasisKind::local)

@@ -37,7 +37,8 @@ struct Coefficients {
 };
 
 /// From the cell system's lambda. local: the energy-optimal ones (solve/galerkin.h). green, exact: the cell system's own, which
-/// the paper's formula asks for; exact: the untruncated sum, Dirichlet vertices at their own value.
+/// the paper's formula asks for; exact: the untruncated sum, Dirichlet vertices and copies on sharp Poisson curves at their
+/// knot's value.
 Coefficients solve_coefficients(const PatchSpace& space, const Voronoi& voronoi, const System& system, const Table& table,
                                 const BasisChoice& choice, const Eigen::MatrixXd& cell_lambda);
 

@@ -66,10 +66,7 @@ void GreenBasis::spread_charges(const Voronoi& voronoi) {
 }
 
 /// At a slit's knot it is a flux that enters.
-bool GreenBasis::point_charge(int cell) const {
-    const int knot = space_.knots.vertex[cell];
-    return space_.domain.dirichlet[knot] || space_.partner[knot] != none;
-}
+bool GreenBasis::point_charge(int cell) const { return on_slit(space_.knots.vertex[cell]); }
 
 /// Adds amount * d_j.
 void GreenBasis::add_charge(int cell, double amount, RowMatrix& columns, Eigen::Index column) const {
@@ -198,7 +195,8 @@ Table GreenBasis::table(const GreenOptions& options) const {
     for (int c = 0; c < n; ++c)
         for (int i = space_.cell_first[c]; i < space_.cell_first[c + 1]; ++i) {
             auto row = blocks[c].weights.row(i - space_.cell_first[c]);
-            const bool fixed = space_.domain.dirichlet[space_.cell_vertices[i]] != 0;
+            const int v = space_.cell_vertices[i];
+            const bool fixed = on_slit(v);
             const double sum = row.sum();
             if (fixed || (options.normalize && !(sum > 1 / factor && sum < factor)))
                 row = Eigen::RowVectorXd::Unit(row.size(), 0);

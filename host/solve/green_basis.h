@@ -69,6 +69,8 @@ private:
     };
     int cells() const { return static_cast<int>(space_.knots.vertex.size()); }
     void spread_charges(const Voronoi& voronoi);
+    /// A Dirichlet vertex or a copy on a sharp Poisson curve: all are knots.
+    bool on_slit(int vertex) const { return space_.domain.dirichlet[vertex] || space_.partner[vertex] != none; }
     bool point_charge(int cell) const;
     void add_charge(int cell, double amount, RowMatrix& columns, Eigen::Index column) const;
     RowMatrix knot_means(const RowMatrix& columns) const;

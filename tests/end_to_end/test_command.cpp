@@ -241,7 +241,7 @@ TEST_F(Command, CheckComparesEveryBasis) {
 TEST_F(Command, CheckSaysWhatItLeavesOut) {
     make_plane();
     json dense = scene();
-    dense["mesh"]["subdivide"] = 3;
+    dense["mesh"]["subdivide"] = 2;
     dense["knots"] = {{"spacing", 0.003}};
     write_scene(dense);
     const json quick = json::parse(pvg("check s.pvg.json --json --device cpu").out);
