@@ -23,8 +23,7 @@ GreenOperator::GreenOperator(const Surface& surface) : factor_(std::make_unique<
     IntrinsicTriangulation triangulation = intrinsic_triangulation(surface);
     make_delaunay(triangulation);
     lumped_area_ = lumped_areas(triangulation, vertices);
-    // Natural on curves too: their vertices are unknowns here, and what flows through them comes as charges.
-    const SparseMatrix S = surface_stiffness(surface, {});
+    S_ = surface_stiffness(surface, {});
     int components = 0;
     const std::vector<int> of_face = face_components(surface, &components);
     component_.assign(vertices, none);
@@ -44,9 +43,9 @@ GreenOperator::GreenOperator(const Surface& surface) : factor_(std::make_unique<
     if (unknowns == 0)
         return;
     std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(S.nonZeros());
+    entries.reserve(S_.nonZeros());
     for (int column = 0; column < vertices; ++column)
-        for (SparseMatrix::InnerIterator entry(S, column); entry; ++entry)
+        for (SparseMatrix::InnerIterator entry(S_, column); entry; ++entry)
             if (place_[entry.row()] != none && place_[column] != none)
                 entries.emplace_back(place_[entry.row()], place_[column], entry.value());
     SparseMatrix inner(unknowns, unknowns);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 #include "solve/envelope.h"
 #include "mesh/surface.h"
@@ -26,6 +27,10 @@ public:
     /// Connected component of a vertex, or none: it has no face.
     int component(int vertex) const { return component_[vertex]; }
     int component_count() const { return static_cast<int>(component_area_.size()); }
+    /// V x V: natural on curves too, whose vertices are unknowns here; what flows through them comes as charges.
+    const Eigen::SparseMatrix<double>& stiffness() const { return S_; }
+    /// V: on the intrinsic Delaunay triangulation.
+    const Eigen::VectorXd& lumped_area() const { return lumped_area_; }
     /// Sum of the lumped areas.
     double component_area(int component) const { return component_area_[component]; }
 
@@ -41,7 +46,8 @@ private:
     std::vector<int> component_;          // V
     std::vector<double> component_area_;  // by component
     Eigen::VectorXd lumped_area_;         // V
-    std::vector<int> place_;              // V: row of the permuted factor, or none (pinned, or without faces)
+    Eigen::SparseMatrix<double> S_;
+    std::vector<int> place_;  // V: row of the permuted factor, or none (pinned, or without faces)
     std::unique_ptr<Factor> factor_;
 };
 

@@ -230,8 +230,9 @@ TEST_F(Command, CheckComparesEveryBasis) {
         EXPECT_EQ(other["basis"], basis);
         EXPECT_EQ(other["bases"], result["bases"]);
         EXPECT_EQ(other["lambda"], other["cell_lambda"]);
-        if (!other["gpu_cpu"].is_null())
+        if (!other["gpu_cpu"].is_null()) {
             EXPECT_TRUE(other["gpu_cpu"]["bit_identical"].get<bool>());
+        }
     }
     two["basis"] = {{"kind", "green"}, {"normalize", false}};
     write_scene(two);
@@ -263,8 +264,9 @@ TEST_F(Command, DecorateTakesABasis) {
         const std::string name = basis;
         ASSERT_EQ(pvg("decorate s.pvg.json -o " + name + ".glb --device cpu --report r.json --basis " + name).exit, 0);
         const json report = json::parse(read_all(folder / "r.json"));
-        if (name == "exact")
+        if (name == "exact") {
             EXPECT_EQ(report["table"]["entries_per_vertex"], 4);
+        }
         // The scene that travels in the output asks for what was made.
         EXPECT_NE(read_all(folder / (name + ".glb")).find("\"kind\":\"" + name + "\""), std::string::npos) << name;
     }
