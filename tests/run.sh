@@ -16,6 +16,8 @@ if [ ! -d build/node/node_modules/gltf-validator ] || [ ! -d build/node/node_mod
     npm install --prefix build/node --no-fund --no-audit --loglevel=error gltf-validator@2.0.0-dev.3.10 bunny@1.0.1
 fi
 export PVG_NODE_MODULES="$root/build/node/node_modules"
+# The convergence study leaves its table and its plot here.
+export PVG_CONVERGENCE="$root/build/convergence"
 
 echo "== tests"
 started=$SECONDS

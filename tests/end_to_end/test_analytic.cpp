@@ -7,7 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "end_to_end/pipeline.h"
+#include "end_to_end/plane.h"
+#include "fixtures/analytic.h"
 
 namespace pvg::test {
 namespace {
@@ -20,36 +21,6 @@ void print(const char* name, const Errors& e, const Decorated& d) {
     std::printf("%s: mean %.4f %%, max %.4f %%, %d vertices, %zu knots\n", name, e.mean, e.max, e.vertices, knots);
 }
 
-/// A unit-square plane, its middle and its length unit (the diagonal).
-struct Plane {
-    ShapeMesh mesh;
-    Point middle;
-    double diagonal;
-
-    explicit Plane(int vertices) : mesh(make_shape("plane", vertices)) {
-        Point low = mesh.points.at(0), high = low;
-        for (const Point& p : mesh.points) {
-            low = low.cwiseMin(p);
-            high = high.cwiseMax(p);
-        }
-        middle = (low + high) / 2;
-        diagonal = (high - low).norm();
-    }
-    json at(double x, double y) const { return {middle[0] + x, middle[1] + y, middle[2]}; }
-    json circle(double x, double y, double radius) const {
-        return {{"type", "circle"}, {"center", at(x, y)}, {"radius", radius / diagonal}};
-    }
-    json polyline(const std::vector<std::array<double, 2>>& points, bool closed) const {
-        json list = json::array();
-        for (const auto& [x, y] : points) list.push_back(at(x, y));
-        return {{"type", "polyline"}, {"points", list}, {"closed", closed}};
-    }
-    /// Height `value` on the inside of a circle; the outside stays open.
-    json rim(double radius, const json& value) const {
-        return {{"kind", "diffusion_curve"}, {"path", circle(0, 0, radius)}, {"left", value}};
-    }
-};
-
 TEST(Analytic, BandBetweenTwoCirclesOnASphere) {
     const ShapeMesh sphere = make_shape("sphere", 41000);
     const double radius = sphere.points.at(0).norm(), unit = 2 * std::sqrt(3.0) * radius;
@@ -61,9 +32,8 @@ TEST(Analytic, BandBetweenTwoCirclesOnASphere) {
     const json primitives = {{{"kind", "diffusion_curve"}, {"path", circle(radius, theta1)}, {"right", {{"height", 0.0}}}},
                              {{"kind", "diffusion_curve"}, {"path", circle(-radius, pi - theta2)}, {"right", {{"height", 1.0}}}}};
     const Decorated d = decorate(primitives, sphere, {{"length_unit", "bbox"}});
-    const double a = std::log(std::tan(theta1 / 2)), b = std::log(std::tan(theta2 / 2));
-    const Errors e = height_errors(
-        d, 1.0, [&](const Point& p, int) { return (std::log(std::tan(std::acos(p[2] / p.norm()) / 2)) - a) / (b - a); });
+    const analytic::SphereBand band{theta1, theta2};
+    const Errors e = height_errors(d, 1.0, [&](const Point& p, int) { return band(std::acos(p[2] / p.norm())); });
     print("sphere band", e, d);
     EXPECT_GT(e.vertices, 20000);
     EXPECT_LE(e.mean, 0.1);
@@ -77,8 +47,7 @@ TEST(Analytic, DiskWithHarmonicRim) {
     for (int i = 0; i <= 128; ++i) stops.push_back({{"t", i / 128.0}, {"height", std::cos(2 * 2 * pi * i / 128.0)}});
     const Decorated d = decorate(json::array({plane.rim(radius, stops)}), plane.mesh, {{"length_unit", "bbox"}});
     const Errors e = height_errors(d, 2.0, [&](const Point& p, int) {
-        const double x = (p[0] - plane.middle[0]) / radius, y = (p[1] - plane.middle[1]) / radius;
-        return x * x - y * y;
+        return analytic::DiskHarmonic{2}((p[0] - plane.middle[0]) / radius, (p[1] - plane.middle[1]) / radius);
     });
     print("disk, harmonic rim", e, d);
     EXPECT_GT(e.vertices, 8000);
@@ -93,13 +62,8 @@ TEST(Analytic, DiskWithPoissonRegionWithoutRing) {
     const json region = {
         {"kind", "poisson_region"}, {"path", plane.circle(0, 0, inner)}, {"rise", {{"height", peak}}}, {"ring", "none"}};
     const Decorated d = decorate({plane.rim(outer, {{"height", 0.0}}), region}, plane.mesh, {{"length_unit", "bbox"}});
-    // u'' + u'/r = f inside, 0 outside; u(outer) = 0.
-    const double log_part = f * inner * inner / 2 * std::log(outer / inner);
-    const double top = -(f * inner * inner / 4) - log_part;
-    const Errors e = height_errors(d, top, [&](const Point& p, int) {
-        const double r = (p - plane.middle).norm();
-        return r < inner ? f * (r * r - inner * inner) / 4 - log_part : -f * inner * inner / 2 * std::log(outer / r);
-    });
+    const analytic::DiskInnerSource u{outer, inner, f};
+    const Errors e = height_errors(d, u.peak(), [&](const Point& p, int) { return u((p - plane.middle).norm()); });
     print("disk, region without ring", e, d);
     EXPECT_LE(e.mean, 0.1);
     EXPECT_LE(e.max, 0.8);
@@ -112,18 +76,13 @@ TEST(Analytic, DiskWithBalancedPoissonRegion) {
     const json region = {
         {"kind", "poisson_region"}, {"path", plane.circle(0, 0, border)}, {"rise", {{"height", peak}}}, {"ring", ring}};
     const Decorated d = decorate({plane.rim(outer, {{"height", 0.0}}), region}, plane.mesh, {{"length_unit", "bbox"}});
-    const double f = -2 * peak * (border * border - r * r) / (r * r * border * border * std::log(border / r));
-    const double f2 = -f * r * r / (border * border - r * r);
-    // On the ring u = f2 (s^2 - R^2) / 4 - f2 R^2 / 2 log(s / R): zero value and slope at R; inside it joins smoothly at r.
-    const auto on_ring = [&](double s) {
-        return f2 * (s * s - border * border) / 4 - f2 * border * border / 2 * std::log(s / border);
-    };
+    const analytic::BalancedRegion u{border, r, peak};
     double outside = 0;
     const Errors e = height_errors(d, peak, [&](const Point& p, int v) {
         const double s = (p - plane.middle).norm();
         if (s > border * 1.001)
             outside = std::max(outside, std::abs(d.height(v)));
-        return s >= border ? 0.0 : s >= r ? on_ring(s) : f * (s * s - r * r) / 4 + on_ring(r);
+        return u(s);
     });
     print("disk, region with ring", e, d);
     std::printf("  outside the region at most %.4f %% of the peak\n", outside / peak * 100);
@@ -145,10 +104,8 @@ TEST(Analytic, OpenSlitHasItsSquareRoot) {
         if (d.build.arrangement.domains[d.layer().height_domain]
                 .dirichlet[d.build.arrangement.domain_vertex[d.layer().height_domain][v]])
             return std::numeric_limits<double>::quiet_NaN();  // given, not solved for
-        double angle = std::atan2(y, x);
-        if (angle < 0)
-            angle += 2 * pi;
-        return std::sqrt(std::hypot(x, y)) * std::sin(angle / 2);
+        const double angle = std::atan2(y, x);
+        return analytic::OpenSlit{1}(std::hypot(x, y), angle < 0 ? angle + 2 * pi : angle);
     });
     print("open slit", e, d);
     // The singular tip costs any linear element O(h^(1/2)) of its local scale, so the largest error stands there.
