@@ -3,7 +3,9 @@
 #include "solve/knots.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "pvg/status.h"
 #include "solve/surface_graph.h"
@@ -12,18 +14,50 @@ namespace pvg {
 
 namespace {
 
-/// Near curves, knots may come this much nearer to each other than one input edge. Imprinting leaves the mesh's own vertices at
-/// any distance from a curve; with a whole edge as least size they would not be knots, and no smooth fit to the knots around
-/// tells them what a field that bends within an edge does there (cpu_reference/ACCURACY.md). As knots they also have the shortest
-/// rows.
-constexpr double least_edge_share = 0.25;
+/// Knots may come this much nearer to each other than one input edge. Imprinting leaves the mesh's own vertices at any distance
+/// from a curve; were they not knots, no smooth fit to the knots around would tell them what a field that bends within an edge
+/// does there (cpu_reference/ACCURACY.md). As knots they also have the shortest rows.
+constexpr double least_edge_share = 0.01;
+
+/// sqrt(curvature / |K|) with K = angle defect / lumped area, growing away from each vertex by the grading. A cone's tip has all
+/// its defect in one vertex: it becomes a knot, and sizes grow from there.
+std::vector<double> curvature_sizes(const Surface& surface, const SurfaceGraph& graph, const KnotOptions& options) {
+    const int vertices = surface.vertex_count();
+    std::vector<double> angle(vertices, 0), area(vertices, 0);
+    for (int h = 0; h < surface.halfedge_count(); ++h) {
+        const int v = surface.origin(h);
+        const Point &at = surface.point(v), &ahead = surface.point(surface.target(h)),
+                    &back = surface.point(surface.origin(Surface::prev(h)));
+        const Point a = ahead - at, b = back - at;
+        const double sine = a.cross(b).norm();
+        angle[v] += std::atan2(sine, a.dot(b));
+        area[v] += sine / 6;
+    }
+    // In units of grading, so that a front's distance adds to it.
+    std::vector<double> reach(vertices, std::numeric_limits<double>::infinity());
+    GraphFront front(graph);
+    for (int v = 0; v < vertices; ++v) {
+        if (surface.outgoing(v) == none || surface.is_border_vertex(v))
+            continue;
+        const double defect = std::abs(2 * std::numbers::pi - angle[v]);
+        const double size = std::sqrt(options.curvature * area[v] / std::max(defect, 1e-12));
+        if (size >= options.spacing)
+            continue;
+        reach[v] = size / options.grading;
+        front.start(v, reach[v]);
+    }
+    front.spread(reach, [&](int, double distance) { return options.grading * distance < options.spacing; });
+    for (double& r : reach) r *= options.grading;
+    return reach;
+}
 
 std::vector<double> knot_sizes(const Domain& domain, const KnotOptions& options, const std::vector<double>& curve_distance,
-                               const std::vector<double>& feature_distance) {
+                               const std::vector<double>& feature_distance, const std::vector<double>& curvature_size) {
     std::vector<double> size(curve_distance.size());
     for (std::size_t v = 0; v < size.size(); ++v) {
         const double least = least_edge_share * std::min(domain.edge_length[v], options.spacing);
-        const double wanted = std::min(options.grading * curve_distance[v], options.feature_grading * feature_distance[v]);
+        const double wanted =
+            std::min({options.grading * curve_distance[v], options.feature_grading * feature_distance[v], curvature_size[v]});
         const double most = std::min(options.spacing, options.most_edges * domain.edge_length[v]);
         size[v] = std::clamp(wanted, std::min(least, most), most);
     }
@@ -39,7 +73,8 @@ Knots place_knots(const Domain& domain, const KnotOptions& options) {
     const int vertices = surface.vertex_count();
     const SurfaceGraph graph = surface_graph(surface, true);
     const std::vector<double> curve_distance = graph_distance(graph, domain.on_curve);
-    const std::vector<double> size = knot_sizes(domain, options, curve_distance, graph_distance(graph, domain.feature));
+    const std::vector<double> size = knot_sizes(domain, options, curve_distance, graph_distance(graph, domain.feature),
+                                                curvature_sizes(surface, graph, options));
 
     std::vector<char> chosen(vertices, 0);
     std::vector<double> free_distance(vertices, std::numeric_limits<double>::infinity());  // to the nearest knot so far

@@ -1,5 +1,8 @@
 #include "solve/knots.h"
 
+#include <array>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "fixtures/domains.h"
@@ -36,7 +39,7 @@ Sampled sampled_square() {
     const std::vector<double> feature = distance_to(s.domain.surface, s.domain.feature);
     for (std::size_t v = 0; v < s.curve.size(); ++v)
         s.wanted.push_back(std::clamp(std::min(s.options.grading * s.curve[v], s.options.feature_grading * feature[v]),
-                                      0.25 * s.domain.edge_length[v], s.options.spacing));
+                                      0.01 * s.domain.edge_length[v], s.options.spacing));
     return s;
 }
 
@@ -140,6 +143,46 @@ TEST(Knots, CellsStaySmallOnFineMeshes) {
     EXPECT_LE(*std::max_element(held.begin(), held.end()), 80);
 }
 
+TEST(Knots, GradeWhereTheSurfaceStretches) {
+    // A bump of radius 0.1 in a plane: knots as dense as its curvature wants, elsewhere the spacing, the size growing in between.
+    const Surface bump = fixtures::lifted(fixtures::irregular_plane(100, 100), [](double x, double y) {
+        const double r2 = std::pow(x - 0.5, 2) + std::pow(y - 0.5, 2);
+        return 0.15 * std::exp(-r2 / 0.01);
+    });
+    const auto counts = [](const Surface& surface, double curvature) {
+        KnotOptions options;
+        options.spacing = 0.1;
+        options.most_edges = 100;
+        options.curvature = curvature;
+        std::array<int, 2> count{0, 0};
+        for (int v : place_knots(plain_domain(surface), options).vertex) {
+            const Point& p = surface.point(v);
+            const double r = std::hypot(p.x() - 0.5, p.y() - 0.5);
+            count[0] += r < 0.1;
+            count[1] += r > 0.4 && !surface.is_border_vertex(v);
+        }
+        return count;
+    };
+    const auto with = counts(bump, 0.5), without = counts(bump, 1e9);
+    EXPECT_GT(with[0], 4 * without[0]);
+    EXPECT_LT(with[1], 1.2 * without[1]);
+    // Bending without stretching costs nothing: a sheet rolled up (the border's vertices are knots anyway).
+    const Surface sheet = fixtures::irregular_plane(60, 60);
+    const Surface roll = fixtures::transformed(
+        sheet, [](const Point& p) { return Point(0.1 * std::cos(10 * p.x()), 0.1 * std::sin(10 * p.x()), p.y()); });
+    const auto flat = counts(sheet, 0.5);
+    KnotOptions options;
+    options.spacing = 0.1;
+    const std::size_t on_sheet = place_knots(plain_domain(sheet), options).vertex.size();
+    const std::size_t on_roll = place_knots(plain_domain(roll), options).vertex.size();
+    EXPECT_NEAR(static_cast<double>(on_roll), static_cast<double>(on_sheet), 0.1 * static_cast<double>(on_sheet));
+    EXPECT_EQ(flat, counts(sheet, 1e9));
+    // The tip of a cone is a knot.
+    const Surface cone = fixtures::lifted(sheet, [](double x, double y) { return std::hypot(x - 0.5, y - 0.5); });
+    const int tip = fixtures::nearest_vertex(cone, Point(0.5, 0.5, 0));
+    EXPECT_NE(place_knots(plain_domain(cone), options).knot_of_vertex[tip], none);
+}
+
 TEST(Knots, DoNotDependOnScale) {
     Domain domain = fixtures::slit_square(2000).domain;
     KnotOptions options;
@@ -161,6 +204,7 @@ TEST(Knots, EveryComponentGetsOne) {
     const Domain domain = plain_domain(Surface(points, faces));
     KnotOptions options;
     options.spacing = options.most_edges = 100;
+    options.curvature = 1e9;  // the spheres' own is not the question here
     const Knots knots = place_knots(domain, options);
     ASSERT_EQ(knots.vertex.size(), 2u);
     EXPECT_LT(knots.vertex[0], ball.vertex_count());
