@@ -17,10 +17,12 @@ namespace pvg {
 namespace {
 
 /// A problem up to the paper's basis. Spacing in units of the diagonal.
+/// Spacing and grading alone decide where knots are: the paper's basis is studied by their distance.
 struct Built {
     explicit Built(Domain domain_, double spacing = 0.05, double grading = 0.25)
         : domain(std::move(domain_)),
-          knots(place_knots(domain, {.spacing = spacing * domain.surface.diagonal(), .grading = grading})),
+          knots(place_knots(
+              domain, {.spacing = spacing * domain.surface.diagonal(), .grading = grading, .curvature = 1e9, .most_edges = 1e9})),
           voronoi(geodesic_voronoi(domain, knots)),
           space(domain, knots, voronoi),
           green(space, voronoi) {}
