@@ -75,6 +75,27 @@ void insert_parameter(const Surface& surface, SampledCurve& curve, double t) {
     curve.t.insert(curve.t.begin() + static_cast<std::ptrdiff_t>(j), t);
 }
 
+/// Towards +x; where the surface faces that way, or another part of it lies there, towards the next of the six axes that leads
+/// away from the center on its own part. Where none does, a corner of the center's face.
+SurfacePoint default_start(const Surface& surface, const ScenePoints& points, const SurfacePoint& center, double radius) {
+    const Point middle = surface.position(center);
+    const std::vector<int> part = face_components(surface);
+    for (const double sign : {1.0, -1.0})
+        for (const Point& axis : {Point(Point::UnitX()), Point(Point::UnitY()), Point(Point::UnitZ())}) {
+            const SurfacePoint start = points.closest(middle + sign * radius * axis);
+            if (part[start.face] == part[center.face] && (surface.position(start) - middle).norm() >= 0.1 * radius)
+                return start;
+        }
+    int farthest = 0;
+    const auto distance = [&](int k) { return (surface.point(surface.face(center.face)[k]) - middle).norm(); };
+    for (int k : {1, 2})
+        if (distance(k) > distance(farthest))
+            farthest = k;
+    SurfacePoint start{center.face, Eigen::Vector3d::Zero()};
+    start.bary[farthest] = 1;
+    return start;
+}
+
 SampledCurve trace(const ScenePath& path, const ScenePoints& points, const BaseSurface& base, double unit,
                    const std::string& where) {
     const Surface& surface = base.surface;
@@ -88,11 +109,7 @@ SampledCurve trace(const ScenePath& path, const ScenePoints& points, const BaseS
         if (path.start) {
             start = points.resolve(*path.start, path.snap_any);
         } else {
-            // Towards +x; where the surface faces that way, towards +y.
-            const Point middle = surface.position(center);
-            start = points.closest(middle + radius * Point::UnitX());
-            if ((surface.position(start) - middle).norm() < 0.1 * radius)
-                start = points.closest(middle + radius * Point::UnitY());
+            start = default_start(surface, points, center, radius);
         }
         const double tolerance = std::min(1e-3 * radius, 0.02 * mean_edge(surface, center.face));
         options.tolerance = tolerance;

@@ -17,7 +17,7 @@ namespace pvg {
 
 struct GalerkinOptions {
     int max_steps = 24;
-    double reduction = 1e-3;  ///< a channel rests when its residual, in the norm of K^-1, has fallen by this factor
+    double reduction = 1e-5;  ///< a channel rests when its residual, in the norm of K^-1, has fallen by this factor
     bool bounded = true;      ///< between the curves' values where there is neither source nor jump (solve/bounds.h)
 };
 

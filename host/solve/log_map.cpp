@@ -37,13 +37,20 @@ Complex third_place(Complex a, Complex b, double edge, Complex turn) {
 }  // namespace
 
 LogMap::LogMap(const Surface& surface, const std::vector<int>& partner)
-    : surface_(surface), partner_(partner), turn_(surface.halfedge_count()) {
+    : partner_(partner),
+      triangulation_(intrinsic_triangulation(surface)),
+      outgoing_(surface.vertex_count(), none),
+      turn_(surface.halfedge_count()) {
+    make_delaunay(triangulation_);
     for (int h = 0; h < surface.halfedge_count(); ++h) {
-        const Point& at = surface.point(surface.origin(h));
-        const Point along = surface.point(surface.target(h)) - at, back = surface.point(surface.origin(Surface::prev(h))) - at;
-        const double size = along.squaredNorm();
-        if (size > 0 && back.squaredNorm() > 0)
-            turn_[h] = {along.dot(back) / size, along.cross(back).norm() / size};
+        int& chosen = outgoing_[origin(h)];
+        if (chosen == none || (triangulation_.twin[h] == none && triangulation_.twin[chosen] != none))
+            chosen = h;
+        const double along = length(h), back = length(Surface::prev(h)), size = along * along;
+        // The angle at h's origin is the one opposite the next halfedge.
+        const OppositeAngle angle = opposite_angle(triangulation_, Surface::next(h));
+        if (size > 0 && back > 0)
+            turn_[h] = {angle.cosine / size, angle.sine / size};
     }
 }
 
@@ -71,12 +78,12 @@ void LogMap::unfold(const std::vector<int>& vertices, const std::vector<int>& lo
         std::push_heap(queue.begin(), queue.end(), std::greater<>());
     };
     const auto lay_fan = [&](int vertex) {
-        const int start = surface_.outgoing(vertex);
+        const int start = outgoing_[vertex];
         double total = 0;
         int h = start;
         while (h != none) {
             total += std::arg(turn_[h]);
-            h = surface_.twin(Surface::prev(h));
+            h = triangulation_.twin[Surface::prev(h)];
             if (h == start)
                 break;
         }
@@ -84,31 +91,31 @@ void LogMap::unfold(const std::vector<int>& vertices, const std::vector<int>& lo
         double angle = 0;
         h = start;
         while (h != none) {
-            vote(local[surface_.target(h)], std::polar(surface_.length(h), angle));
+            vote(local[target(h)], std::polar(length(h), angle));
             angle += scale * std::arg(turn_[h]);
             const int last = Surface::prev(h);
-            h = surface_.twin(last);
+            h = triangulation_.twin[last];
             if (h == none)
-                vote(local[surface_.origin(last)], std::polar(surface_.length(last), angle));
+                vote(local[origin(last)], std::polar(length(last), angle));
             if (h == start)
                 break;
         }
     };
     // Faces of the vertex with one corner left to lay.
     const auto unfold_around = [&](int vertex) {
-        const int start = surface_.outgoing(vertex), i = local[vertex];
+        const int start = outgoing_[vertex], i = local[vertex];
         int h = start;
         while (h != none) {
             const int last = Surface::prev(h);
-            const int j = local[surface_.target(h)], m = local[surface_.origin(last)];
+            const int j = local[target(h)], m = local[origin(last)];
             if (j != none && m != none && laid[j] != laid[m] && turn_[h] != 0.0) {
-                const double edge = surface_.length(h);
+                const double edge = length(h);
                 if (laid[j])
                     vote(m, third_place(place[i], place[j], edge, turn_[h]));
                 else
                     vote(j, third_place(place[i], place[m], edge * std::abs(turn_[h]), 1.0 / turn_[h]));
             }
-            h = surface_.twin(last);
+            h = triangulation_.twin[last];
             if (h == start)
                 break;
         }
@@ -139,13 +146,13 @@ void LogMap::unfold(const std::vector<int>& vertices, const std::vector<int>& lo
     for (std::size_t v = 0; v < count; ++v) {
         if (laid[v])
             continue;
-        const int start = surface_.outgoing(vertices[v]);
+        const int start = outgoing_[vertices[v]];
         int h = start;
         while (h != none) {
-            for (int w : {local[surface_.target(h)], local[surface_.origin(Surface::prev(h))]})
+            for (int w : {local[target(h)], local[origin(Surface::prev(h))]})
                 if (w != none && laid[w])
                     place[v] = place[w];
-            h = surface_.twin(Surface::prev(h));
+            h = triangulation_.twin[Surface::prev(h)];
             if (h == start)
                 break;
         }

@@ -1,15 +1,16 @@
 // A log map good enough to span low harmonic polynomials: the surface around a vertex laid into the plane face by face, nearest
 // vertices first. Exact in the plane; elsewhere distances from the vertex come from faces in their true size, and directions are
-// interpolated between a face's corners. After R. Schmidt, C. Grimm, B. Wyvill, "Interactive decal compositing with discrete
-// exponential maps", ACM TOG 25(3), 2006, and E. L. Melvaer, M. Reimers, "Geodesic polar coordinates on polygonal meshes",
-// Computer Graphics Forum 31(8), 2012.
+// interpolated between a face's corners. Faces are those of the intrinsic Delaunay triangulation: long triangles would leave a
+// patch and tear it apart. After R. Schmidt, C. Grimm, B. Wyvill, "Interactive decal compositing with discrete exponential
+// maps", ACM TOG 25(3), 2006, and E. L. Melvaer, M. Reimers, "Geodesic polar coordinates on polygonal meshes", Computer
+// Graphics Forum 31(8), 2012.
 #pragma once
 
 #include <complex>
 #include <utility>
 #include <vector>
 
-#include "mesh/surface.h"
+#include "mesh/intrinsic.h"
 
 namespace pvg {
 
@@ -34,8 +35,13 @@ public:
                 std::vector<std::complex<double>>& place) const;
 
 private:
-    const Surface& surface_;
+    double length(int halfedge) const { return triangulation_.lengths[halfedge / 3][halfedge % 3]; }
+    int origin(int halfedge) const { return triangulation_.faces[halfedge / 3][halfedge % 3]; }
+    int target(int halfedge) const { return origin(Surface::next(halfedge)); }
+
     const std::vector<int>& partner_;
+    IntrinsicTriangulation triangulation_;
+    std::vector<int> outgoing_;  ///< per vertex: a halfedge that leaves it, on a border the border's; none without a face
     std::vector<std::complex<double>>
         turn_;  ///< per halfedge: prev's reversed edge = turn x this edge, in the face's plane; 0 without length
 };
