@@ -99,123 +99,6 @@ void PatchSolver::join_edges() {
     }
 }
 
-/// Brings those to the front that, one after another, are farthest from all chosen before, as seen from the cell's knot.
-/// Distances go from cell to cell, so that the two sides of a slit are apart; the copies on a Poisson curve go together.
-void PatchSolver::spread(std::vector<Candidate>& candidates, int wanted) const {
-    const int count = static_cast<int>(candidates.size());
-    const auto vertex = [&](int i) { return space_.knots.vertex[candidates[i].knot]; };
-    std::vector<std::pair<int, int>> by_knot(count);
-    for (int i = 0; i < count; ++i) by_knot[i] = {candidates[i].knot, i};
-    std::sort(by_knot.begin(), by_knot.end());
-    const auto find = [&](int knot) {
-        const auto it = std::lower_bound(by_knot.begin(), by_knot.end(), std::pair(knot, 0));
-        return it != by_knot.end() && it->first == knot ? it->second : none;
-    };
-    std::vector<double> gap(count, std::numeric_limits<double>::infinity()), distance(count);
-    std::vector<char> chosen(count, 0);
-    std::vector<Candidate> order;
-    using Entry = std::pair<double, int>;
-    std::vector<Entry> heap;
-    const auto choose = [&](int i) {
-        chosen[i] = 1;
-        order.push_back(candidates[i]);
-        std::fill(distance.begin(), distance.end(), std::numeric_limits<double>::infinity());
-        distance[i] = 0;
-        heap.assign(1, {0.0, i});
-        while (!heap.empty()) {
-            std::pop_heap(heap.begin(), heap.end(), std::greater<>());
-            const auto [d, at] = heap.back();
-            heap.pop_back();
-            if (d > distance[at])
-                continue;
-            const int knot = candidates[at].knot;
-            for (int e = space_.neighbour_first[knot]; e < space_.neighbour_first[knot + 1]; ++e) {
-                const int other = find(space_.neighbours[e]);
-                if (other == none)
-                    continue;
-                const double to = d + std::abs(place_[local_[vertex(other)]] - place_[local_[vertex(at)]]);
-                if (to >= std::min(distance[other], gap[other]))
-                    continue;
-                distance[other] = to;
-                heap.emplace_back(to, other);
-                std::push_heap(heap.begin(), heap.end(), std::greater<>());
-            }
-        }
-        for (int k = 0; k < count; ++k) gap[k] = std::min(gap[k], distance[k]);
-    };
-    const auto choose_copies = [&](int i) {
-        choose(i);
-        for_copies(local_[vertex(i)], [&](int copy) {
-            const int knot = space_.knots.knot_of_vertex[vertices_[copy]], other = knot == none ? none : find(knot);
-            if (other != none && !chosen[other])
-                choose(other);
-        });
-    };
-    choose_copies(0);
-    while (static_cast<int>(order.size()) < wanted) {
-        int best = none;
-        double most = -1;
-        for (int i = 0; i < count; ++i) {
-            const double seen = candidates[i].distance > 0 ? gap[i] / candidates[i].distance : 0;
-            if (chosen[i] || seen <= most)
-                continue;
-            best = i;
-            most = seen;
-        }
-        if (best == none)
-            break;
-        choose_copies(best);
-    }
-    for (int i = 0; i < count; ++i)
-        if (!chosen[i])
-            order.push_back(candidates[i]);
-    candidates = std::move(order);
-}
-
-/// Knots of the inner rings, nearest first, then the sources of the patch; cut to the longest list allowed.
-void PatchSolver::choose_list(Patch& patch) {
-    std::vector<Candidate> candidates;
-    for (int c : cells_) {
-        const int v = local_[space_.knots.vertex[c]];
-        if (v != none && ring_of_cell_[c] <= options_.rings)
-            candidates.push_back({ring_of_cell_[c], std::abs(place_[v]), c});
-    }
-    std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-        if (a.ring != b.ring)
-            return a.ring < b.ring;
-        return a.distance != b.distance ? a.distance < b.distance : a.knot < b.knot;
-    });
-    std::vector<int> sources;
-    for (int v : vertices_)
-        for (int i = space_.load_first[v]; i < space_.load_first[v + 1]; ++i) sources.push_back(space_.loads[i].first);
-    std::sort(sources.begin(), sources.end());
-    sources.erase(std::unique(sources.begin(), sources.end()), sources.end());
-
-    // Padding costs as much as a knot: give up to three knots away for it. Eight must stay, whatever the sources take.
-    const int inner = static_cast<int>(candidates.size()), others = static_cast<int>(sources.size());
-    const int all = inner + others;
-    const int wanted = all > options_.list ? options_.list : all >= options_.round_down ? all / 4 * 4 : all;
-    const int room = std::min(std::max(wanted - others, 8), inner);
-    if (inner > room + 3)
-        spread(candidates, room);
-    patch.list.clear();
-    patch.rows.clear();
-    patch.distance.clear();
-    patch.radius = 0;
-    entry_.assign(vertices_.size(), none);
-    for (int i = 0; i < room; ++i) {
-        const Candidate& candidate = candidates[i];
-        entry_[local_[space_.knots.vertex[candidate.knot]]] = i;
-        patch.list.push_back(candidate.knot);
-        patch.rows.push_back(space_.knots.vertex[candidate.knot]);
-        patch.distance.push_back(candidate.distance);
-        patch.radius = std::max(patch.radius, candidate.distance);
-    }
-    scale_ = patch.radius > 0 ? patch.radius : 1;
-    patch.list_knots = room;
-    for (int s : sources) patch.list.push_back(static_cast<int>(space_.knots.vertex.size()) + s);
-}
-
 /// A Dirichlet vertex that is not listed takes the mean of the two nearest along the curve that are, by inverse distance: linear
 /// between them. One that no curve joins to a listed one follows the nearest through the patch.
 void PatchSolver::attach_dirichlet() {
@@ -349,6 +232,18 @@ double* PatchSolver::new_offset(int v) {
     return offset_.data() + static_cast<std::size_t>(offset_of_[v]) * width_;
 }
 
+/// The patch's vertices before and behind on the border of the surface, not by the edges of S: where the border needed points,
+/// those also join the two sides of a Poisson curve.
+std::array<int, 2> PatchSolver::along_border(int v) const {
+    const Surface& surface = space_.domain.surface;
+    const int start = surface.outgoing(vertices_[v]);
+    if (start == none || surface.twin(start) != none)
+        return {none, none};
+    int back = Surface::prev(start);
+    while (surface.twin(back) != none) back = Surface::prev(surface.twin(back));
+    return {local_[surface.target(start)], local_[surface.origin(back)]};
+}
+
 /// The listed copies of one vertex that lie on the same two sides of the curve as the copies left and right, as near along it as
 /// there are any; none where no curve joins them.
 std::pair<int, int> PatchSolver::listed_sides(int left, int right) {
@@ -357,12 +252,14 @@ std::pair<int, int> PatchSolver::listed_sides(int left, int right) {
         const auto [a, b] = sides_[at];
         if (entry_[a] != none && entry_[b] != none)
             return {a, b};
-        for (int e = edge_first_[a]; e < edge_first_[a + 1]; ++e) {
-            const int next = edge_to_[e];
+        const std::array<int, 2> beside_a = along_border(a), beside_b = along_border(b);
+        for (const int next : beside_a) {
+            if (next == none)
+                continue;
             for_copies(next, [&](int copy) {
-                const auto begin = edge_to_.begin() + edge_first_[b], end = edge_to_.begin() + edge_first_[b + 1];
                 const std::pair<int, int> pair(next, copy);
-                if (std::find(begin, end, copy) != end && std::find(sides_.begin(), sides_.end(), pair) == sides_.end())
+                if (std::find(beside_b.begin(), beside_b.end(), copy) != beside_b.end() &&
+                    std::find(sides_.begin(), sides_.end(), pair) == sides_.end())
                     sides_.push_back(pair);
             });
         }

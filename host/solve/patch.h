@@ -64,6 +64,7 @@ private:
     void join_edges();
     void choose_list(Patch& patch);
     void spread(std::vector<Candidate>& candidates, int wanted) const;
+    void keep_copies_together(std::vector<Candidate>& candidates, int room) const;
     void attach_dirichlet();
     void number_unknowns();
     void open_columns(const Patch& patch);
@@ -83,6 +84,7 @@ private:
             if (local_[copy] >= 0)
                 visit(local_[copy]);
     }
+    std::array<int, 2> along_border(int v) const;
     std::pair<int, int> listed_sides(int left, int right);
     /// 1, Re z, Im z, Re z^2, Im z^2, ... of a vertex, lengths in units of scale_.
     void polynomials(int v, double* values) const;
