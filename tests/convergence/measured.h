@@ -83,7 +83,8 @@ public:
         : domain(domain_),
           knots(place_knots(domain, {.spacing = spacing,
                                      .grading = grading * KnotOptions().grading,
-                                     .feature_grading = grading * KnotOptions().feature_grading})),
+                                     .feature_grading = grading * KnotOptions().feature_grading,
+                                     .most_edges = 1e9})),  // the spacing is what is studied
           voronoi(geodesic_voronoi(domain, knots)),
           system(domain, knots, voronoi),
           cell_lambda(system.solve(domain)),
