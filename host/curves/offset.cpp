@@ -62,26 +62,27 @@ CurveSources sources_along(const Surface& surface, std::span<const SourceEdge> e
 }
 
 double largest_distance(const Surface& surface, const GeodesicField& field, std::span<const GeodesicSource> sources) {
-    int farthest = none;
-    for (int v = 0; v < surface.vertex_count(); ++v)
-        if (std::isfinite(field.distance[v]) && (farthest == none || field.distance[v] > field.distance[farthest]))
-            farthest = v;
-    if (farthest == none)
-        return 0;
-    double most = field.distance[farthest];
+    double most = 0;
+    for (double d : field.distance)
+        if (std::isfinite(d))
+            most = std::max(most, d);
     constexpr int grid = 8;
-    const int start = surface.outgoing(farthest);
-    for (int h = start; h != none;) {
+    for (int f = 0; f < surface.face_count(); ++f) {
+        // No point of the face is farther than a corner and the longest edge.
+        double nearest = std::numeric_limits<double>::infinity(), longest = 0;
+        for (int k = 0; k < 3; ++k) {
+            nearest = std::min(nearest, field.distance[surface.face(f)[k]]);
+            longest = std::max(longest, surface.length(3 * f + k));
+        }
+        if (!(nearest + longest > most))
+            continue;
         for (int i = 0; i <= grid; ++i)
             for (int j = 0; i + j <= grid; ++j) {
-                const SurfacePoint at{h / 3, Eigen::Vector3d(grid - i - j, i, j) / grid};
+                const SurfacePoint at{f, Eigen::Vector3d(grid - i - j, i, j) / grid};
                 const double d = distance_at(surface, field, sources, at);
                 if (std::isfinite(d))
                     most = std::max(most, d);
             }
-        h = surface.twin(Surface::prev(h));
-        if (h == start)
-            break;
     }
     return most;
 }

@@ -30,8 +30,8 @@ struct CurveSources {
 };
 CurveSources sources_along(const Surface& surface, std::span<const SourceEdge> edges, double spacing);
 
-/// A larger lower bound of the largest distance than the vertices give: exact distances on a grid in the faces around the
-/// farthest vertex.
+/// A larger lower bound of the largest distance than the vertices give: exact distances on a grid in every face that may hold
+/// it. Needs field.windows.
 double largest_distance(const Surface& surface, const GeodesicField& field, std::span<const GeodesicSource> sources);
 
 /// Without the points inside faces that the straight line misses by less than tolerance (mesh units). kept: the numbers of the

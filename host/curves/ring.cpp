@@ -131,14 +131,13 @@ std::vector<SurfacePath> ring_borders(const Surface& drawn, const CurveChain& bo
     const SlitSurface region = slit_surface(drawn, {}, faces_inside(drawn, border));
     const std::vector<SourceEdge> edges = border_edges(region, drawn, border);
     GeodesicOptions options;
+    options.keep_windows = true;
     const CurveSources coarse = sources_along(region.surface, edges, std::numeric_limits<double>::infinity());
-    double largest = 0;
-    for (double d : geodesic_distances(region.surface, coarse.sources, options).distance)
-        if (std::isfinite(d))
-            largest = std::max(largest, d);
+    // In coarse meshes no vertex may lie off the border: faces tell.
+    const double largest =
+        largest_distance(region.surface, geodesic_distances(region.surface, coarse.sources, options), coarse.sources);
     // Offsets off by (0.1 w)^2 / 8 w = 0.1 % of the width.
     const CurveSources fine = sources_along(region.surface, edges, 0.1 * ring * largest);
-    options.keep_windows = true;
     const GeodesicField field = geodesic_distances(region.surface, fine.sources, options);
     const double width = ring * largest_distance(region.surface, field, fine.sources);
     if (ring_width)

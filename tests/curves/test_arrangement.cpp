@@ -204,6 +204,20 @@ TEST(Regions, ASquareIsFlatOutside) {
     EXPECT_LT(outside, 0.003);
 }
 
+TEST(Regions, InsideOneHugeTriangle) {
+    // No vertex lies off the border before the ring is drawn: what is inside must be measured in the faces.
+    const double radius = 0.1;
+    const Arranged a = arranged(
+        fixtures::plane(1, 1),
+        json::array({height_curve(circle(0.7, 0.3, 0.2), 0, 0), region(circle(0.7, 0.3, radius), {{"rise", {{"height", 1}}}})}));
+    const Surface& surface = a.result.imprinted.surface;
+    int on_inner = 0;
+    for (const Point& p : surface.points()) on_inner += std::abs((p - Point(0.7, 0.3, 0)).norm() - 0.8 * radius) < 0.005 * radius;
+    EXPECT_GT(on_inner, 20);
+    EXPECT_LT(surface.vertex_count(), 1000);
+    EXPECT_GT(solve_plainly(a.result.domains.at(0)).maxCoeff(), 0.9);
+}
+
 TEST(Regions, AThinStrokeIsFlatOutside) {
     // 10 : 1, one input edge a ring.
     const Surface fine = fixtures::irregular_plane(100, 100);
