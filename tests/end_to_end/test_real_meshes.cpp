@@ -27,12 +27,7 @@ using nlohmann::json;
 
 /// A vertex of the largest component, the one that is most edges away from its border (on a closed one the first). Where all are
 /// on the border, the middle of the largest triangle.
-struct Centre {
-    Point at;
-    bool vertex = true;
-};
-
-Centre centre_of(const Surface& surface) {
+Point centre_of(const Surface& surface) {
     int components = 0;
     const std::vector<int> component = face_components(surface, &components);
     std::vector<double> area(components, 0);
@@ -51,7 +46,7 @@ Centre centre_of(const Surface& surface) {
     if (queue.empty()) {
         for (int v = 0; v < surface.vertex_count(); ++v)
             if (inside[v])
-                return {surface.point(v)};
+                return surface.point(v);
     }
     for (std::size_t i = 0; i < queue.size(); ++i) {
         int h = surface.outgoing(queue[i]);
@@ -66,12 +61,12 @@ Centre centre_of(const Surface& surface) {
         } while (h != none && h != first);
     }
     if (rings[queue.back()] > 0)
-        return {surface.point(queue.back())};
+        return surface.point(queue.back());
     int face = none;
     for (int f = 0; f < surface.face_count(); ++f)
         if (component[f] == largest && (face == none || surface.face_area(f) > surface.face_area(face)))
             face = f;
-    return {surface.position({face, {1 / 3.0, 1 / 3.0, 1 / 3.0}}), false};
+    return surface.position({face, {1 / 3.0, 1 / 3.0, 1 / 3.0}});
 }
 
 json scene_of(const Point& centre, double radius, bool region) {
@@ -102,14 +97,12 @@ struct Decorated {
 
 /// The largest circle of 10 % of the diagonal and less that can be drawn, with a region in it where that can be. The first
 /// error where none can.
-std::optional<Decorated> decorate(const RawMesh& mesh, const Centre& centre, std::string& error) {
+std::optional<Decorated> decorate(const RawMesh& mesh, const Point& centre, std::string& error) {
     for (double radius = 0.1; radius > 0.002; radius *= 0.7)
         for (const bool region : {true, false}) {
-            if (region && !centre.vertex)
-                continue;  // a ring inside one triangle takes minutes: distances from its border to itself are quadratic there
             try {
                 Warnings warnings;
-                const Scene scene = parse_scene(scene_of(centre.at, radius, region), "test.pvg.json");
+                const Scene scene = parse_scene(scene_of(centre, radius, region), "test.pvg.json");
                 Decorated result{radius, region, build(scene, {mesh.points, mesh.normals, mesh.faces}, {}, warnings), {}};
                 result.evaluation = evaluate_on_cpu(result.build.program, 0);
                 return result;
