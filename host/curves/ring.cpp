@@ -131,11 +131,16 @@ std::vector<SurfacePath> ring_borders(const Surface& drawn, const CurveChain& bo
     const SlitSurface region = slit_surface(drawn, {}, faces_inside(drawn, border));
     const std::vector<SourceEdge> edges = border_edges(region, drawn, border);
     GeodesicOptions options;
-    options.keep_windows = true;
     const CurveSources coarse = sources_along(region.surface, edges, std::numeric_limits<double>::infinity());
-    // In coarse meshes no vertex may lie off the border: faces tell.
-    const double largest =
-        largest_distance(region.surface, geodesic_distances(region.surface, coarse.sources, options), coarse.sources);
+    double largest = 0, longest_edge = 0;
+    for (double d : geodesic_distances(region.surface, coarse.sources, options).distance)
+        if (std::isfinite(d))
+            largest = std::max(largest, d);
+    for (int h = 0; h < region.surface.halfedge_count(); ++h) longest_edge = std::max(longest_edge, region.surface.length(h));
+    // In coarse regions no vertex may lie off the border: there the faces tell.
+    options.keep_windows = true;
+    if (largest < 2 * longest_edge)
+        largest = largest_distance(region.surface, geodesic_distances(region.surface, coarse.sources, options), coarse.sources);
     // Offsets off by (0.1 w)^2 / 8 w = 0.1 % of the width.
     const CurveSources fine = sources_along(region.surface, edges, 0.1 * ring * largest);
     const GeodesicField field = geodesic_distances(region.surface, fine.sources, options);

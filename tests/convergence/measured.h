@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "fixtures/fem.h"
 #include "convergence/problems.h"
 #include "cpu_reference/finite_elements.h"
 #include "solve/basis.h"
@@ -39,21 +40,7 @@ inline double mean_edge(const Domain& domain) {
     return sum / domain.surface.halfedge_count();
 }
 
-/// What the oracle gets to see of a domain.
-inline FemProblem fem_problem(const Domain& domain) {
-    FemProblem problem;
-    problem.points = domain.surface.points();
-    problem.faces = domain.surface.faces();
-    for (int v = 0; v < domain.surface.vertex_count(); ++v)
-        if (domain.dirichlet[v])
-            problem.dirichlet.emplace_back(v, domain.dirichlet_value.row(v));
-    for (const Coupling& c : domain.couplings) problem.jumps.push_back({c.left, c.right, c.jump});
-    if (!domain.sources.empty())
-        problem.laplacian = Eigen::MatrixXd::Zero(domain.surface.face_count(), domain.channels);
-    for (const SourceColumn& source : domain.sources)
-        for (const auto& [face, laplacian] : source.profile) problem.laplacian.row(face) += laplacian * source.value;
-    return problem;
-}
+using fixtures::fem_problem;
 
 inline Norms field_norms(const FemProblem& problem, const Eigen::VectorXd& reference, const Eigen::VectorXd& values) {
     const FieldError error = compare_fields(problem, reference, values)[0];
