@@ -12,6 +12,34 @@
 
 namespace pvg {
 
+/// What a control gives the values of: a diffusion curve's side, a Poisson curve's jump, or a Poisson region.
+enum class ControlPart { left, right, jump, region };
+enum class Quantity { color, height };
+
+/// Values that the scene gives, as an editor turns them: stops along a curve (a region has one). Everything that a domain holds
+/// is linear in its controls' values: the domain says where on which control each number is read and with which weight, so that
+/// new values ask for no new geometry.
+struct Control {
+    std::string pointer;  ///< the primitive's place in the scene
+    ControlPart part = ControlPart::left;
+    Quantity quantity = Quantity::color;
+    bool closed = false;    ///< the curve's parameter is periodic
+    std::vector<double> t;  ///< stops, ascending in [0, 1]
+    Eigen::MatrixXd value;  ///< stops x C: colours in the space of diffusion, heights; 0 in channels of the other quantity
+    bool reached = true;    ///< false: part of it lies where no diffusion curve reaches, so its values may only be 0
+};
+
+/// weight times a control's value: that of one stop, or the one at parameter t.
+struct ControlTerm {
+    int control = none;
+    int stop = none;  ///< none: at t
+    double t = 0;
+    double weight = 0;
+    auto place() const { return std::tuple(control, stop, t); }
+};
+/// A sum over places on controls, each at most once, ascending.
+using ControlSum = std::vector<ControlTerm>;
+
 /// One column of sources: a fixed profile over faces, scaled by one coefficient per channel.
 /// The Laplacian on face t is sum over columns of profile(t) * value(channel); f < 0 raises a bump.
 struct SourceColumn {
@@ -41,11 +69,20 @@ struct Domain {
         couplings;  ///< each vertex is `left` in at most one, and then `right` in none; neither copy is Dirichlet
     std::vector<SourceColumn> sources;
 
+    /// What the numbers above are made of. A domain without controls has its values given directly.
+    std::vector<Control> controls;
+    std::vector<std::pair<int, ControlSum>> held;  ///< (Dirichlet vertex, its value), ascending
+    std::vector<ControlSum> jumps;                 ///< as many as couplings
+    std::vector<ControlSum> source_values;         ///< as many as sources
+
     std::vector<char>
         on_curve;  ///< V: 1 on any imprinted curve of this problem (DC, PC, region border, ring, strip): becomes a knot
     std::vector<char> feature;  ///< V: 1 where DCs cross, meet or end (grade towards these)
     std::vector<double>
         edge_length;  ///< V: the INPUT mesh's local edge length (mean at the parent's vertices), for the sizing field
 };
+
+/// Writes what the controls say now into dirichlet_value, the couplings' jumps and the sources' values. Requires controls.
+void apply_controls(Domain& domain);
 
 }  // namespace pvg

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "curves/controls.h"
 #include "curves/drawing.h"
 #include "curves/group.h"
 #include "curves/slit.h"
@@ -30,32 +31,44 @@ std::vector<double> mean_edge_lengths(const Surface& surface) {
     return sum;
 }
 
-Eigen::RowVectorXd joined(const Eigen::RowVectorXd& a, const Eigen::RowVectorXd& b) {
-    Eigen::RowVectorXd both(a.size() + b.size());
-    both << a, b;
-    return both;
+/// A sum over one group's controls as one over a domain's, in which they begin at `first`.
+ControlSum shifted(ControlSum sum, int first) {
+    for (ControlTerm& term : sum) term.control += first;
+    return sum;
 }
 
-/// The columns of one or two groups over `channels` channels; the same profile of the same primitive is one column.
-std::vector<GroupSource> merged_sources(const std::vector<const Group*>& groups, int channels) {
+/// The columns of one or two groups; the same profile of the same primitive is one column. first: each group's first control.
+std::vector<GroupSource> merged_sources(const std::vector<const Group*>& groups, const std::vector<int>& first) {
     std::vector<GroupSource> all;
-    int first = 0;
-    for (const Group* group : groups) {
+    for (std::size_t g = 0; g < groups.size(); ++g) {
         const std::size_t earlier = all.size();
-        for (const GroupSource& source : group->sources) {
-            Eigen::RowVectorXd value = Eigen::RowVectorXd::Zero(channels);
-            value.segment(first, group->channels) = source.value;
+        for (const GroupSource& source : groups[g]->sources) {
             const auto end = all.begin() + static_cast<std::ptrdiff_t>(earlier);
             const auto same = std::find_if(
                 all.begin(), end, [&](const GroupSource& s) { return s.drawn == source.drawn && s.profile == source.profile; });
             if (same != end)
-                same->value += value;
+                add_scaled(same->value, shifted(source.value, first[g]), 1);
             else
-                all.push_back({source.drawn, source.profile, std::move(value)});
+                all.push_back({source.drawn, source.profile, shifted(source.value, first[g])});
         }
-        first += group->channels;
     }
     return all;
+}
+
+/// The groups' controls in their order, values over all channels. Returns the number of each group's first one.
+std::vector<int> take_controls(const std::vector<const Group*>& groups, Domain& domain) {
+    std::vector<int> first;
+    int channel = 0;
+    for (const Group* group : groups) {
+        first.push_back(static_cast<int>(domain.controls.size()));
+        for (const Control& control : group->controls) {
+            domain.controls.push_back(control);
+            domain.controls.back().value = Eigen::MatrixXd::Zero(control.value.rows(), domain.channels);
+            domain.controls.back().value.middleCols(channel, group->channels) = control.value;
+        }
+        channel += group->channels;
+    }
+    return first;
 }
 
 /// The reached part of groups that agree in slits and held vertices; channels in the order of the groups.
@@ -63,6 +76,7 @@ Domain make_domain(const Drawing& drawing, const std::vector<const Group*>& grou
     const Group& first = *groups.front();
     Domain domain;
     for (const Group* group : groups) domain.channels += group->channels;
+    const std::vector<int> first_control = take_controls(groups, domain);
 
     SlitSurface part = slit_surface(drawing.imprinted.surface, first.slit, first.reached);
     std::vector<int> vertex_of_cut(first.cut.surface.vertex_count(), none);
@@ -87,27 +101,34 @@ Domain make_domain(const Drawing& drawing, const std::vector<const Group*>& grou
         const int parent = part.vertex_parent[v];
         domain.edge_length[v] = edge_length[parent];
         domain.dirichlet[v] = first.dirichlet[cut_of_vertex[v]];
-        int channel = 0;
         for (const Group* group : groups) {
-            if (domain.dirichlet[v])
-                domain.dirichlet_value.row(v).segment(channel, group->channels) = group->value.row(cut_of_vertex[v]);
-            channel += group->channels;
             domain.on_curve[v] |= group->on_curve[parent];
             domain.feature[v] |= group->feature[parent];
         }
     }
     for (std::size_t c = 0; c < first.couplings.size(); ++c) {
-        const Coupling& coupling = first.couplings[c];
-        Eigen::RowVectorXd jump = coupling.jump;
-        if (groups.size() == 2)
-            jump = joined(jump, groups[1]->couplings[c].jump);
-        domain.couplings.push_back({vertex_of_cut[coupling.left], vertex_of_cut[coupling.right], std::move(jump)});
+        const GroupCoupling& coupling = first.couplings[c];
+        domain.couplings.push_back({vertex_of_cut[coupling.left], vertex_of_cut[coupling.right], {}});
+        ControlSum& jump = domain.jumps.emplace_back();
+        for (std::size_t g = 0; g < groups.size(); ++g)
+            add_scaled(jump, shifted(groups[g]->couplings[c].jump, first_control[g]), 1);
     }
-    for (GroupSource& source : merged_sources(groups, domain.channels)) {
-        SourceColumn column{drawing.primitives[source.drawn].primitive->name(), {}, std::move(source.value)};
+    for (std::size_t i = 0; i < first.held.size(); ++i) {
+        const int v = vertex_of_cut[first.held[i].first];
+        if (v == none)
+            continue;
+        ControlSum& value = domain.held.emplace_back(v, ControlSum{}).second;
+        for (std::size_t g = 0; g < groups.size(); ++g)
+            add_scaled(value, shifted(groups[g]->held[i].second, first_control[g]), 1);
+    }
+    std::sort(domain.held.begin(), domain.held.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (GroupSource& source : merged_sources(groups, first_control)) {
+        SourceColumn column{drawing.primitives[source.drawn].primitive->name(), {}, {}};
         for (const auto& [face, laplacian] : source.profile) column.profile.emplace_back(face_of_parent[face], laplacian);
         domain.sources.push_back(std::move(column));
+        domain.source_values.push_back(std::move(source.value));
     }
+    apply_controls(domain);
     domain.surface = std::move(part.surface);
     domain.vertex_parent = std::move(part.vertex_parent);
     domain.face_parent = std::move(part.face_parent);
@@ -116,7 +137,7 @@ Domain make_domain(const Drawing& drawing, const std::vector<const Group*>& grou
 
 /// Groups that may share a domain: everything that the matrix depends on is the same.
 bool agree(const Group& a, const Group& b) {
-    const auto same_pair = [](const Coupling& x, const Coupling& y) { return x.left == y.left && x.right == y.right; };
+    const auto same_pair = [](const GroupCoupling& x, const GroupCoupling& y) { return x.left == y.left && x.right == y.right; };
     return a.slit == b.slit && a.dirichlet == b.dirichlet && a.reached == b.reached &&
            std::equal(a.couplings.begin(), a.couplings.end(), b.couplings.begin(), b.couplings.end(), same_pair);
 }

@@ -4,7 +4,9 @@
 #include <map>
 #include <set>
 #include <string>
+#include <type_traits>
 
+#include "curves/controls.h"
 #include "curves/region.h"
 #include "pvg/status.h"
 #include "scene/color.h"
@@ -12,56 +14,14 @@
 namespace pvg {
 namespace {
 
-using Row = Eigen::RowVectorXd;
-
-/// Values of one channel group along a curve, colours already in the space of diffusion.
-struct CurveValues {
-    Stops<Color> color;
-    Stops<double> height;
-
-    bool empty() const { return color.empty() && height.empty(); }
-    Row at(double t, bool closed) const {
-        if (color.empty())
-            return Row::Constant(1, evaluate_stops(height, t, closed));
-        return evaluate_stops(color, t, closed).transpose();
-    }
-    std::size_t count() const { return color.empty() ? height.t.size() : color.t.size(); }
-    const std::vector<double>& stops() const { return color.empty() ? height.t : color.t; }
-    Row stop(std::size_t k) const { return color.empty() ? Row::Constant(1, height.value[k]) : Row(color.value[k].transpose()); }
-    double largest() const {
-        double most = 0;
-        for (std::size_t k = 0; k < count(); ++k) most = std::max(most, stop(k).cwiseAbs().maxCoeff());
-        return most;
-    }
-};
-
-CurveValues side_values(const SideValues& side, Quantity quantity, ColorSpace space) {
-    CurveValues values;
-    if (quantity == Quantity::height) {
-        values.height = side.height;
-    } else {
-        values.color = side.color;
-        for (Color& c : values.color.value) c = to_diffusion_space(c, space);
-    }
-    return values;
-}
-
-CurveValues jump_values(const PoissonCurve& curve, Quantity quantity) {
-    CurveValues values;
-    if (quantity == Quantity::height)
-        values.height = curve.height_jump;
-    else
-        values.color = curve.color_jump;
-    return values;
-}
-
 const char* noun(Quantity quantity) { return quantity == Quantity::color ? "colour" : "height"; }
 
 /// What a primitive is to the group.
 struct Role {
     int drawn = none;
-    CurveValues left, right;  // diffusion curve
-    CurveValues jump;         // Poisson curve
+    int left = none, right = none;  // diffusion curve: controls, or none where a side is open
+    int jump = none;                // Poisson curve: control
+    int region = none;              // Poisson region: control
     std::vector<ChainEdge> edges;
 };
 
@@ -74,7 +34,7 @@ struct Role {
 class GroupMaker {
 public:
     GroupMaker(const Drawing& drawing, Group& group, ColorSpace space, Warnings& warnings)
-        : drawing_(drawing), surface_(drawing.imprinted.surface), group_(group), warnings_(warnings) {
+        : drawing_(drawing), surface_(drawing.imprinted.surface), group_(group), space_(space), warnings_(warnings) {
         for (int p = 0; p < static_cast<int>(drawing.primitives.size()); ++p) {
             const DrawnPrimitive& drawn = drawing.primitives[p];
             if (drawn.layer != group.layer)
@@ -82,15 +42,16 @@ public:
             Role role;
             role.drawn = p;
             if (const auto* dc = std::get_if<DiffusionCurve>(&drawn.primitive->shape)) {
-                role.left = side_values(dc->left, group.quantity, space);
-                role.right = side_values(dc->right, group.quantity, space);
-                if (role.left.empty() && role.right.empty())
+                role.left = add_side(drawn, ControlPart::left, dc->left);
+                role.right = add_side(drawn, ControlPart::right, dc->right);
+                if (role.left == none && role.right == none)
                     continue;
                 role.edges = chain_edges(surface_, drawn.chain);
                 diffusion_curves_.push_back(std::move(role));
             } else if (const auto* pc = std::get_if<PoissonCurve>(&drawn.primitive->shape)) {
-                role.jump = jump_values(*pc, group.quantity);
-                if (role.jump.empty())
+                role.jump = group.quantity == Quantity::height ? add_control(drawn, ControlPart::jump, pc->height_jump)
+                                                               : add_control(drawn, ControlPart::jump, pc->color_jump);
+                if (role.jump == none)
                     continue;
                 if (pc->width > 0) {
                     sources_.push_back(std::move(role));
@@ -101,6 +62,9 @@ public:
             } else if (const auto* pr = std::get_if<PoissonRegion>(&drawn.primitive->shape)) {
                 if (group.quantity == Quantity::color ? !pr->color.has_value() : !pr->height.has_value())
                     continue;
+                role.region = group.quantity == Quantity::color
+                                  ? add_control(drawn, ControlPart::region, Stops<Color>{{0}, {*pr->color}})
+                                  : add_control(drawn, ControlPart::region, Stops<double>{{0}, {*pr->height}});
                 sources_.push_back(std::move(role));
             }
         }
@@ -131,6 +95,30 @@ public:
     }
 
 private:
+    /// none where there is no stop.
+    template <typename Value>
+    int add_control(const DrawnPrimitive& drawn, ControlPart part, const Stops<Value>& stops) {
+        if (stops.empty())
+            return none;
+        Eigen::MatrixXd value(static_cast<Eigen::Index>(stops.t.size()), group_.channels);
+        for (std::size_t k = 0; k < stops.t.size(); ++k)
+            if constexpr (std::is_same_v<Value, double>)
+                value(static_cast<Eigen::Index>(k), 0) = stops.value[k];
+            else
+                value.row(static_cast<Eigen::Index>(k)) = stops.value[k].transpose();
+        group_.controls.push_back(
+            {drawn.primitive->pointer, part, group_.quantity, drawn.chain.closed, stops.t, std::move(value), true});
+        return static_cast<int>(group_.controls.size()) - 1;
+    }
+    int add_side(const DrawnPrimitive& drawn, ControlPart part, const SideValues& side) {
+        if (group_.quantity == Quantity::height)
+            return add_control(drawn, part, side.height);
+        Stops<Color> diffused = side.color;
+        for (Color& color : diffused.value) color = to_diffusion_space(color, space_);
+        return add_control(drawn, part, diffused);
+    }
+    static ControlSum at(int control, double t) { return {{control, none, t, 1}}; }
+
     void lay_diffusion_curves() {
         std::set<std::pair<int, int>> overlaps;
         for (int r = 0; r < static_cast<int>(diffusion_curves_.size()); ++r) {
@@ -173,11 +161,6 @@ private:
     /// Jumps across the edges of sharp Poisson curves, as seen by the vertex that a halfedge leaves: u(left of it) - u(right of
     /// it).
     void lay_poisson_curves() {
-        const auto add = [&](int h, const Row& jump) {
-            const auto [at, fresh] = jump_.emplace(h, jump);
-            if (!fresh)
-                at->second += jump;
-        };
         for (const Role& role : poisson_curves_) {
             const CurveChain& chain = drawing_.primitives[role.drawn].chain;
             mark_on_curve(chain);
@@ -188,25 +171,26 @@ private:
                     continue;
                 group_.slit[edge.left] = group_.slit[edge.right] = 1;
                 const std::size_t j = (i + 1) % count;
-                add(edge.left, end_jump(role, i));
-                add(edge.right, -end_jump(role, j));
+                add_scaled(jump_[edge.left], end_jump(role, i), 1);
+                add_scaled(jump_[edge.right], end_jump(role, j), -1);
             }
         }
     }
 
     /// J at a vertex of the chain: 0 at an end around which the surface is whole, since both sides are one there.
-    Row end_jump(const Role& role, std::size_t i) {
+    ControlSum end_jump(const Role& role, std::size_t i) {
         const DrawnPrimitive& drawn = drawing_.primitives[role.drawn];
         const CurveChain& chain = drawn.chain;
-        const Row jump = role.jump.at(chain.t[i], chain.closed);
+        ControlSum jump = at(role.jump, chain.t[i]);
         if (chain.closed || (i != 0 && i + 1 != chain.vertices.size()))
             return jump;
         if (is_cut_open(chain.vertices[i]))
             return jump;
-        if (jump.cwiseAbs().maxCoeff() > 1e-6 * role.jump.largest())
+        if (value_of(jump, group_.controls, group_.channels).cwiseAbs().maxCoeff() >
+            1e-6 * group_.controls[role.jump].value.cwiseAbs().maxCoeff())
             warnings_.push_back(drawn.where + ": the " + noun(group_.quantity) + " jump of " + drawn.primitive->name() +
                                 " does not fade out at t = " + (i == 0 ? "0" : "1") + ", where the curve ends; it is 0 there");
-        return Row::Zero(jump.size());
+        return {};
     }
 
     /// Whether the surface border or a diffusion curve meets the vertex.
@@ -235,7 +219,7 @@ private:
 
     void hold_values() {
         const Surface& cut = group_.cut.surface;
-        group_.value = Eigen::MatrixXd::Zero(cut.vertex_count(), group_.channels);
+        value_.assign(cut.vertex_count(), {});
         std::vector<int> given(cut.vertex_count(), 0);
         // Each sector is bounded by at most two sides of curves, and takes the mean of the values they give.
         for (int h = 0; h < cut.halfedge_count(); ++h) {
@@ -243,30 +227,27 @@ private:
             if (side.drawn == none)
                 continue;
             const Role& role = diffusion_curves_[role_of_.at(side.drawn)];
-            const CurveValues& values = side.left ? role.left : role.right;
-            if (values.empty())
+            const int values = side.left ? role.left : role.right;
+            if (values == none)
                 continue;
             const CurveChain& chain = drawing_.primitives[side.drawn].chain;
             const std::size_t next = (side.edge + 1) % chain.vertices.size();
             const double at_origin = chain.t[side.left ? static_cast<std::size_t>(side.edge) : next];
             const double at_target = chain.t[side.left ? next : static_cast<std::size_t>(side.edge)];
-            group_.value.row(cut.origin(h)) += values.at(at_origin, chain.closed);
-            group_.value.row(cut.target(h)) += values.at(at_target, chain.closed);
-            ++given[cut.origin(h)];
-            ++given[cut.target(h)];
+            for (const auto& [v, t] : {std::pair{cut.origin(h), at_origin}, std::pair{cut.target(h), at_target}}) {
+                add_scaled(value_[v], at(values, t), 1);
+                ++given[v];
+            }
         }
         group_.dirichlet.assign(cut.vertex_count(), 0);
         for (int v = 0; v < cut.vertex_count(); ++v) {
-            if (given[v] == 0)
-                continue;
-            group_.dirichlet[v] = 1;
-            if (given[v] > 1)
-                group_.value.row(v) /= given[v];
+            group_.dirichlet[v] = given[v] > 0;
+            for (ControlTerm& term : value_[v]) term.weight /= given[v];
         }
     }
 
     /// Copies of a vertex in a stretch of its fan that no diffusion curve cuts, with u - u(first copy).
-    using Arc = std::vector<std::pair<int, Row>>;
+    using Arc = std::vector<std::pair<int, ControlSum>>;
 
     void couple() {
         std::set<int> vertices;
@@ -288,15 +269,15 @@ private:
                         break;
                     }
             Arc arc;
-            Row offset = Row::Zero(group_.channels);
+            ControlSum offset;
             for (std::size_t i = 0; i < fan.size(); ++i) {
                 const int h = fan[i];
                 if (group_.slit[h] && group_.side[h].drawn != none) {
                     couple_arc(arc);
                     arc.clear();
-                    offset.setZero();
+                    offset.clear();
                 } else if (const auto jump = jump_.find(h); jump != jump_.end() && i > 0) {
-                    offset += jump->second;
+                    add_scaled(offset, jump->second, 1);
                 }
                 const int copy = group_.cut.surface.origin(h);
                 if (std::none_of(arc.begin(), arc.end(), [&](const auto& entry) { return entry.first == copy; }))
@@ -326,7 +307,10 @@ private:
                 if ((j > i ? j - i : i - j) < (nearest > i ? nearest - i : i - nearest))
                     nearest = j;
             group_.dirichlet[arc[i].first] = 1;
-            group_.value.row(arc[i].first) = group_.value.row(arc[nearest].first) + arc[i].second - arc[nearest].second;
+            ControlSum& value = value_[arc[i].first];
+            value = value_[arc[nearest].first];
+            add_scaled(value, arc[i].second, 1);
+            add_scaled(value, arc[nearest].second, -1);
         }
     }
 
@@ -335,14 +319,12 @@ private:
             const DrawnPrimitive& drawn = drawing_.primitives[role.drawn];
             mark_on_curve(drawn.chain);
             for (const CurveChain& border : drawn.borders) mark_on_curve(border);
-            const auto* region = std::get_if<PoissonRegion>(&drawn.primitive->shape);
             for (const DrawnSource& source : drawn.sources) {
-                if (region)
-                    group_.sources.push_back({role.drawn, source.profile,
-                                              group_.quantity == Quantity::color ? Row(region->color->transpose())
-                                                                                 : Row::Constant(1, *region->height)});
-                else if (source.stops == role.jump.stops())  // one column a stop, so that a new value needs no new profile
-                    group_.sources.push_back({role.drawn, source.profile, role.jump.stop(source.stop)});
+                if (role.region != none)
+                    group_.sources.push_back({role.drawn, source.profile, {{role.region, 0, 0, 1}}});
+                else if (source.stops ==
+                         group_.controls[role.jump].t)  // one column a stop, so that a new value needs no new profile
+                    group_.sources.push_back({role.drawn, source.profile, {{role.jump, static_cast<int>(source.stop), 0, 1}}});
             }
         }
     }
@@ -358,7 +340,7 @@ private:
             return c;
         };
         const auto component_of = [&](int v) { return component[cut.outgoing(v) / 3]; };
-        for (const Coupling& coupling : group_.couplings)
+        for (const GroupCoupling& coupling : group_.couplings)
             root[find(component_of(coupling.left))] = find(component_of(coupling.right));
         std::vector<char> bounded(count, 0);
         for (int v = 0; v < cut.vertex_count(); ++v)
@@ -370,20 +352,31 @@ private:
         for (const Role& role : poisson_curves_)
             for (const ChainEdge& edge : role.edges)
                 for (const int h : {edge.left, edge.right})
-                    if (h != none && !group_.reached[h / 3] && role.jump.largest() > 0)
-                        refuse_unreached(drawing_.primitives[role.drawn], group_.quantity);
+                    if (h != none && !group_.reached[h / 3])
+                        must_be_zero(role.drawn, role.jump, none);
         for (const GroupSource& source : group_.sources)
             for (const auto& [face, laplacian] : source.profile)
-                if (!group_.reached[face] && laplacian != 0 && !source.value.isZero(0))
-                    refuse_unreached(drawing_.primitives[source.drawn], group_.quantity);
+                if (!group_.reached[face] && laplacian != 0)
+                    must_be_zero(source.drawn, source.value.front().control, source.value.front().stop);
         std::erase_if(group_.couplings,
-                      [&](const Coupling& coupling) { return !group_.reached[cut.outgoing(coupling.left) / 3]; });
+                      [&](const GroupCoupling& coupling) { return !group_.reached[cut.outgoing(coupling.left) / 3]; });
+        for (int v = 0; v < cut.vertex_count(); ++v)
+            if (group_.dirichlet[v])
+                group_.held.emplace_back(v, std::move(value_[v]));
         for (GroupSource& source : group_.sources)
             std::erase_if(source.profile, [&](const auto& entry) { return !group_.reached[entry.first]; });
         std::erase_if(group_.sources, [](const GroupSource& source) { return source.profile.empty(); });
         for (int h = 0; h < surface_.halfedge_count(); ++h)
             if (group_.slit[h] && !group_.reached[h / 3] && !group_.reached[surface_.twin(h) / 3])
                 group_.slit[h] = 0;
+    }
+
+    /// Values (of one stop, or of all) whose place no diffusion curve reaches.
+    void must_be_zero(int drawn, int control, int stop) {
+        Control& c = group_.controls[control];
+        if (stop == none ? !c.value.isZero(0) : !c.value.row(stop).isZero(0))
+            refuse_unreached(drawing_.primitives[drawn], group_.quantity);
+        c.reached = false;
     }
 
     void mark_on_curve(const CurveChain& chain) {
@@ -393,10 +386,12 @@ private:
     const Drawing& drawing_;
     const Surface& surface_;
     Group& group_;
+    const ColorSpace space_;
     Warnings& warnings_;
     std::vector<Role> diffusion_curves_, poisson_curves_, sources_;
-    std::map<int, int> role_of_;  // drawn -> index into diffusion_curves_
-    std::map<int, Row> jump_;     // per halfedge
+    std::map<int, int> role_of_;      // drawn -> index into diffusion_curves_
+    std::map<int, ControlSum> jump_;  // per halfedge
+    std::vector<ControlSum> value_;   // per vertex of cut: what holds it
 };
 
 }  // namespace

@@ -13,8 +13,6 @@
 
 namespace pvg {
 
-enum class Quantity { color, height };
-
 /// Which primitive's side faces a halfedge: edge `edge` of the chain of primitives[drawn], seen from its left or right.
 struct CurveSide {
     int drawn = none;
@@ -22,24 +20,32 @@ struct CurveSide {
     bool left = false;
 };
 
-/// profile over faces of the imprinted surface, as in SourceColumn.
+/// profile over faces of the imprinted surface, as in SourceColumn, times a sum of controls.
 struct GroupSource {
     int drawn = none;
     std::vector<std::pair<int, double>> profile;
-    Eigen::RowVectorXd value;
+    ControlSum value;
+};
+
+/// A Coupling whose jump is a sum of controls.
+struct GroupCoupling {
+    int left = none;
+    int right = none;
+    ControlSum jump;
 };
 
 struct Group {
     int layer = none;
     Quantity quantity = Quantity::color;
-    int channels = 0;                 ///< 4 or 1
-    bool bounded = false;             ///< some diffusion curve gives it a value; if not, all below is empty
-    std::vector<char> slit;           ///< per halfedge of the imprinted surface: its edge is cut (both twins flagged)
-    std::vector<CurveSide> side;      ///< per halfedge: the diffusion curve along it, or drawn none
-    SlitSurface cut;                  ///< all faces, cut along slit
-    std::vector<char> dirichlet;      ///< per vertex of cut
-    Eigen::MatrixXd value;            ///< per vertex of cut, x channels
-    std::vector<Coupling> couplings;  ///< over vertices of cut
+    int channels = 0;               ///< 4 or 1
+    bool bounded = false;           ///< some diffusion curve gives it a value; if not, all below is empty
+    std::vector<char> slit;         ///< per halfedge of the imprinted surface: its edge is cut (both twins flagged)
+    std::vector<CurveSide> side;    ///< per halfedge: the diffusion curve along it, or drawn none
+    SlitSurface cut;                ///< all faces, cut along slit
+    std::vector<Control> controls;  ///< values over the group's own channels
+    std::vector<char> dirichlet;    ///< per vertex of cut
+    std::vector<std::pair<int, ControlSum>> held;  ///< (vertex of cut that is Dirichlet, its value), ascending
+    std::vector<GroupCoupling> couplings;          ///< over vertices of cut
     std::vector<GroupSource> sources;
     std::vector<char> reached;   ///< per face: in a part with a Dirichlet vertex (couplings join parts)
     std::vector<char> on_curve;  ///< per vertex of the imprinted surface

@@ -122,6 +122,14 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
 Scene parse_scene(const nlohmann::json& document, const std::filesystem::path& file,
                   const std::vector<std::string>& assignments = {});
 
+/// value[0] * weight[0] + value[1] * weight[1] of two stops is the value at t; the second weight is 0 where one stop is all.
+struct StopWeights {
+    std::array<std::size_t, 2> stop{0, 0};
+    std::array<double, 2> weight{1, 0};
+};
+/// t of the stops, ascending, at least one. Rules as below.
+StopWeights stop_weights(const std::vector<double>& stops, double t, bool closed);
+
 /// Value at t: constant beyond the ends of an open curve; periodic on a closed one (t = 0 and 1 both given and
 /// different: a jump at the seam, t = 0 wins there).
 Color evaluate_stops(const Stops<Color>& stops, double t, bool closed);
