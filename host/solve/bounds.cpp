@@ -5,9 +5,7 @@
 #include <limits>
 
 namespace pvg {
-namespace {
 
-/// Numbers the components of vertices over faces and couplings in the order of their first vertex.
 std::vector<int> number_parts(const Domain& domain, int& count) {
     const Surface& surface = domain.surface;
     const int vertices = surface.vertex_count();
@@ -48,8 +46,6 @@ std::vector<int> number_parts(const Domain& domain, int& count) {
     }
     return part;
 }
-
-}  // namespace
 
 PartBounds part_bounds(const Domain& domain) {
     constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -14,6 +14,9 @@
 
 namespace pvg {
 
+/// Per vertex of the domain: its part's number, or none where it has no face. Parts stand in the order of their first vertex.
+std::vector<int> number_parts(const Domain& domain, int& count);
+
 /// Bounds of the values that the domain holds now. P parts: components of the surface, joined by couplings; C channels. A channel
 /// of a part with a source, a jump or no given value is not bounded: -infinity and infinity.
 struct PartBounds {

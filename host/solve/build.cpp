@@ -166,15 +166,20 @@ Build build(const Scene& scene, const MeshInput& mesh, const BuildOptions& optio
         System system(domain, knots, voronoi);
         Eigen::MatrixXd cell_lambda = system.solve(domain);
         clock.enter("basis");
-        const PatchSpace space(domain, knots, voronoi);
+        PatchSpace space(domain, knots, voronoi);
         Field field;
         field.table = basis_table(space, voronoi, basis_choice(scene), {options.threads, options.on_progress});
         clock.enter("system");
         Coefficients solved = solve_coefficients(space, voronoi, system, field.table, basis_choice(scene), cell_lambda);
         field.coefficients = std::move(solved.values);
         b.program.fields.push_back(std::move(field));
-        b.domains.push_back(
-            {std::move(knots), std::move(voronoi), std::move(system), std::move(cell_lambda), std::move(solved.lambda)});
+        SolvedDomain& kept = b.domains.emplace_back(
+            SolvedDomain{{}, std::move(voronoi), std::move(system), std::move(cell_lambda), std::move(solved.lambda), {}, {}});
+        if (options.keep_forms) {
+            kept.unbounded = std::move(solved.unbounded);
+            kept.form = std::move(static_cast<EnergyForm&>(space));
+        }
+        kept.knots = std::move(knots);
     }
 
     clock.enter("basis");

@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "solve/basis.h"
+#include "solve/bounds.h"
 #include "solve/galerkin.h"
+#include "solve/given_values.h"
 #include "solve/green_basis.h"
 
 namespace pvg {
@@ -48,16 +50,6 @@ Table identity_table(const PatchSpace& space) {
     return table;
 }
 
-std::vector<float> control_values(const Eigen::MatrixXd& lambda, const Domain& domain) {
-    std::vector<float> all;
-    all.reserve((lambda.rows() + domain.sources.size()) * domain.channels);
-    for (Eigen::Index j = 0; j < lambda.rows(); ++j)
-        for (int c = 0; c < domain.channels; ++c) all.push_back(static_cast<float>(lambda(j, c)));
-    for (const SourceColumn& source : domain.sources)
-        for (int c = 0; c < domain.channels; ++c) all.push_back(static_cast<float>(source.value[c]));
-    return all;
-}
-
 std::vector<float> vertex_values(const Eigen::MatrixXd& u, const Eigen::MatrixXd& lambda, const PatchSpace& space,
                                  const Table& table) {
     const Domain& domain = space.domain;
@@ -92,15 +84,29 @@ Table basis_table(const PatchSpace& space, const Voronoi& voronoi, const BasisCh
 
 Coefficients solve_coefficients(const PatchSpace& space, const Voronoi& voronoi, const System& system, const Table& table,
                                 const BasisChoice& choice, const Eigen::MatrixXd& cell_lambda) {
-    Coefficients result{cell_lambda, {}};
+    Coefficients result{cell_lambda, cell_lambda, {}};
     if (choice.kind == BasisKind::exact) {
         result.values = vertex_values(GreenBasis(space, voronoi).sum(cell_lambda), cell_lambda, space, table);
         return result;
     }
-    if (choice.kind == BasisKind::local)
-        minimise_energy(space, table, system, {}, result.lambda);
-    result.values = control_values(result.lambda, space.domain);
+    const Eigen::MatrixXd source = given_values(space.domain, space.knots.vertex).source;
+    if (choice.kind == BasisKind::local) {
+        minimise_energy(space, table, system, source, {}, result.unbounded);
+        result.lambda = result.unbounded;
+        if (system.unknowns() > 0)
+            keep_between_bounds(space.domain, space.knots, result.lambda);
+    }
+    result.values = coefficient_values(result.lambda, source);
     return result;
+}
+
+std::vector<float> coefficient_values(const Eigen::MatrixXd& lambda, const Eigen::MatrixXd& source) {
+    std::vector<float> all;
+    all.reserve(static_cast<std::size_t>(lambda.size() + source.size()));
+    for (const Eigen::MatrixXd* rows : {&lambda, &source})
+        for (Eigen::Index j = 0; j < rows->rows(); ++j)
+            for (Eigen::Index c = 0; c < rows->cols(); ++c) all.push_back(static_cast<float>((*rows)(j, c)));
+    return all;
 }
 
 }  // namespace pvg

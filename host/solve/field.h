@@ -33,6 +33,7 @@ Table basis_table(const PatchSpace& space, const Voronoi& voronoi, const BasisCh
 /// What a table is evaluated with, for the values that the domain holds now.
 struct Coefficients {
     Eigen::MatrixXd lambda;     ///< N x C: the knots' control coefficients
+    Eigen::MatrixXd unbounded;  ///< N x C: the same before they were put between the curves' values (solve/bounds.h)
     std::vector<float> values;  ///< Field::coefficients
 };
 
@@ -41,5 +42,8 @@ struct Coefficients {
 /// knot's value.
 Coefficients solve_coefficients(const PatchSpace& space, const Voronoi& voronoi, const System& system, const Table& table,
                                 const BasisChoice& choice, const Eigen::MatrixXd& cell_lambda);
+
+/// lambda (N x C), then source values (sources x C), as Field::coefficients has them.
+std::vector<float> coefficient_values(const Eigen::MatrixXd& lambda, const Eigen::MatrixXd& source);
 
 }  // namespace pvg

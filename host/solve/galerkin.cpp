@@ -1,6 +1,7 @@
 #include "solve/galerkin.h"
 
 #include "solve/bounds.h"
+#include "solve/given_values.h"
 
 namespace pvg {
 namespace {
@@ -47,12 +48,12 @@ private:
     Eigen::Index channels_;
 };
 
-/// -(S u + load), by vertex.
-Values unbalanced_forces(const PatchSpace& space, const Values& u) {
-    Values forces = -(space.S * u);
-    for (int v = 0; v < space.domain.surface.vertex_count(); ++v)
-        for (int i = space.load_first[v]; i < space.load_first[v + 1]; ++i)
-            forces.row(v) -= space.loads[i].second * space.domain.sources[space.loads[i].first].value;
+/// -(S u + load), by vertex, from S u.
+Values unbalanced_forces(const EnergyForm& form, const Eigen::MatrixXd& source, const Values& internal) {
+    Values forces = -internal;
+    for (Eigen::Index v = 0; v < forces.rows(); ++v)
+        for (int i = form.load_first[v]; i < form.load_first[v + 1]; ++i)
+            forces.row(v) -= form.loads[i].second * source.row(form.loads[i].first);
     return forces;
 }
 
@@ -60,26 +61,29 @@ Eigen::RowVectorXd dot(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { ret
 
 }  // namespace
 
-int minimise_energy(const PatchSpace& space, const Table& table, const System& system, const GalerkinOptions& options,
-                    Eigen::MatrixXd& lambda) {
+int minimise_energy(const EnergyForm& form, const Table& table, const System& system, const Eigen::MatrixXd& source,
+                    const GalerkinOptions& options, Eigen::MatrixXd& lambda) {
     const Eigen::Index knots = lambda.rows(), channels = lambda.cols();
     if (system.unknowns() == 0)
         return 0;
     const TableProduct psi(table, channels);
     Values coefficients = Values::Zero(table.coefficient_count, channels);
     coefficients.topRows(knots) = lambda;
-    for (std::size_t s = 0; s < space.domain.sources.size(); ++s)
-        coefficients.row(knots + static_cast<Eigen::Index>(s)) = space.domain.sources[s].value;
+    coefficients.bottomRows(source.rows()) = source;
 
-    Eigen::MatrixXd residual = psi.gather(unbalanced_forces(space, psi.values(coefficients))).topRows(knots);
+    const Values u = psi.values(coefficients), internal = form.S * u;
+    Eigen::MatrixXd residual = psi.gather(unbalanced_forces(form, source, internal)).topRows(knots);
     Eigen::MatrixXd direction = system.apply_inverse(residual);
     Eigen::RowVectorXd size = dot(residual, direction);
-    const Eigen::RowVectorXd enough = size * (options.reduction * options.reduction);
+    // Where the cell system has the optimum already, what is left is rounding: it has no direction to go in, and conjugate
+    // gradients that take it for one diverge.
+    const Eigen::RowVectorXd rounding = 1e-24 * (u.array() * internal.array()).colwise().sum();
+    const Eigen::RowVectorXd enough = (size * (options.reduction * options.reduction)).cwiseMax(rounding);
     coefficients.setZero();
     int steps = 0;
     for (; steps < options.max_steps && (size.array() > enough.array()).any(); ++steps) {
         coefficients.topRows(knots) = direction;
-        const Eigen::MatrixXd change = psi.gather(space.S * psi.values(coefficients)).topRows(knots);
+        const Eigen::MatrixXd change = psi.gather(form.S * psi.values(coefficients)).topRows(knots);
         const Eigen::RowVectorXd curvature = dot(direction, change);
         for (Eigen::Index c = 0; c < channels; ++c) {
             if (!(size[c] > enough[c]) || !(curvature[c] > 0))
@@ -93,7 +97,14 @@ int minimise_energy(const PatchSpace& space, const Table& table, const System& s
             direction.col(c) = preconditioned.col(c) + (size[c] > 0 ? next[c] / size[c] : 0) * direction.col(c);
         size = next;
     }
-    if (options.bounded)
+    return steps;
+}
+
+int minimise_energy(const PatchSpace& space, const Table& table, const System& system, const GalerkinOptions& options,
+                    Eigen::MatrixXd& lambda) {
+    const int steps =
+        minimise_energy(space, table, system, given_values(space.domain, space.knots.vertex).source, options, lambda);
+    if (options.bounded && system.unknowns() > 0)
         keep_between_bounds(space.domain, space.knots, lambda);
     return steps;
 }

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "pvg/table.h"
+#include "solve/energy_form.h"
 #include "solve/patch_space.h"
 #include "solve/system.h"
 
@@ -21,8 +22,13 @@ struct GalerkinOptions {
     bool bounded = true;      ///< between the curves' values where there is neither source nor jump (solve/bounds.h)
 };
 
-/// Improves lambda (N x C) in place, for the values that the domain holds now; fixed knots and jumps stay. Returns the steps
-/// taken. Deterministic. Requires the space, table (over the space's knots, then its sources) and system of one domain.
+/// Improves lambda (N x C) in place for the source coefficients `source` (sources x C); fixed knots and jumps stay, nothing is
+/// bounded. Returns the steps taken. Deterministic.
+int minimise_energy(const EnergyForm& form, const Table& table, const System& system, const Eigen::MatrixXd& source,
+                    const GalerkinOptions& options, Eigen::MatrixXd& lambda);
+
+/// The same for the values that the domain holds now, and within bounds where the options ask for it. Requires the space, table
+/// (over the space's knots, then its sources) and system of one domain.
 int minimise_energy(const PatchSpace& space, const Table& table, const System& system, const GalerkinOptions& options,
                     Eigen::MatrixXd& lambda);
 

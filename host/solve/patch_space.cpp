@@ -58,9 +58,9 @@ BorderConditions border_conditions(const Domain& domain) {
 }
 
 PatchSpace::PatchSpace(const Domain& domain_, const Knots& knots_, const Voronoi& voronoi)
-    : domain(domain_),
+    : EnergyForm{surface_stiffness(domain_.surface, border_conditions(domain_)), {}, {}},
+      domain(domain_),
       knots(knots_),
-      S(surface_stiffness(domain.surface, border_conditions(domain))),
       partner(coupled_partners(domain)),
       right(domain.surface.vertex_count(), none),
       log_map(domain.surface, partner) {

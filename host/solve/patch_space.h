@@ -1,13 +1,11 @@
 // What all patches of a domain share: operator, cells, couplings and loads.
 #pragma once
 
-#include <utility>
 #include <vector>
-
-#include <Eigen/SparseCore>
 
 #include "curves/domain.h"
 #include "mesh/border_points.h"
+#include "solve/energy_form.h"
 #include "solve/knots.h"
 #include "solve/log_map.h"
 #include "solve/voronoi.h"
@@ -18,21 +16,18 @@ namespace pvg {
 BorderConditions border_conditions(const Domain& domain);
 
 /// Read-only once made. V vertices, N cells. The domain and the knots must outlive it.
-class PatchSpace {
+class PatchSpace : public EnergyForm {
 public:
     PatchSpace(const Domain& domain, const Knots& knots, const Voronoi& voronoi);
 
     const Domain& domain;
     const Knots& knots;
-    Eigen::SparseMatrix<double> S;     ///< V x V stiffness of the whole domain (mesh/border_points.h): no negative weights
     std::vector<int> partner;          ///< V: the next copy of a vertex on sharp Poisson curves, in a ring, or none
     std::vector<int> right;            ///< V: the copy that a left one's jump stands against, or none
     std::vector<int> neighbour_first;  ///< N + 1: cells that touch or that an edge of S or a sharp Poisson curve joins, ascending
     std::vector<int> neighbours;
-    std::vector<int> cell_first;                ///< N + 1
-    std::vector<int> cell_vertices;             ///< ascending in each cell
-    std::vector<int> load_first;                ///< V + 1
-    std::vector<std::pair<int, double>> loads;  ///< per vertex: (source, integral of its unit profile times the hat function)
+    std::vector<int> cell_first;     ///< N + 1
+    std::vector<int> cell_vertices;  ///< ascending in each cell
     LogMap log_map;
 
 private:

@@ -172,31 +172,23 @@ System& System::operator=(System&&) noexcept = default;
 
 int System::unknowns() const { return state_->unknowns; }
 
-Eigen::MatrixXd System::solve(const Domain& domain) const {
+Eigen::MatrixXd System::solve(const Domain& domain) const { return solve(domain, given_values(domain, state_->vertex)); }
+
+Eigen::MatrixXd System::solve(const Domain& domain, const GivenValues& given) const {
     const State& s = *state_;
-    const int n = static_cast<int>(s.vertex.size()), channels = domain.channels;
+    const int n = static_cast<int>(s.vertex.size());
     // What is known: fixed values, and jumps against the representative.
-    Eigen::MatrixXd lambda = Eigen::MatrixXd::Zero(n, channels);
+    Eigen::MatrixXd lambda = given.fixed;
     std::vector<int> knot_of(domain.surface.vertex_count(), none);
-    for (int j = 0; j < n; ++j) {
-        knot_of[s.vertex[j]] = j;
-        if (domain.dirichlet[s.vertex[j]])
-            lambda.row(j) = domain.dirichlet_value.row(s.vertex[j]);
-    }
-    for (int c : s.jump_order) {
-        const Coupling& coupling = domain.couplings[c];
-        lambda.row(knot_of[coupling.left]) = lambda.row(knot_of[coupling.right]) + coupling.jump;
-    }
+    for (int j = 0; j < n; ++j) knot_of[s.vertex[j]] = j;
+    for (int c : s.jump_order)
+        lambda.row(knot_of[domain.couplings[c].left]) = lambda.row(knot_of[domain.couplings[c].right]) + given.jump.row(c);
     if (s.unknowns == 0)
         return lambda;
 
     Eigen::MatrixXd residual = -(s.K * lambda);
-    if (!domain.sources.empty()) {
-        Eigen::MatrixXd coefficients(static_cast<Eigen::Index>(domain.sources.size()), channels);
-        for (std::size_t k = 0; k < domain.sources.size(); ++k)
-            coefficients.row(static_cast<Eigen::Index>(k)) = domain.sources[k].value;
-        residual -= s.load * coefficients;
-    }
+    if (given.source.rows() > 0)
+        residual -= s.load * given.source;
     lambda += apply_inverse(residual);
     if (!lambda.allFinite())
         throw Error(ErrorKind::bad_input, "system: the control coefficients are not finite");

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "curves/domain.h"
+#include "solve/given_values.h"
 #include "solve/knots.h"
 #include "solve/voronoi.h"
 
@@ -25,7 +26,10 @@ public:
     int unknowns() const;
     /// lambda (N x C) from the values that the domain holds NOW (Dirichlet, jumps, source values): one back-substitution.
     Eigen::MatrixXd solve(const Domain& domain) const;
-    /// E K^-1 E^T r (N x C), E from the unknowns to all knots: 0 at fixed knots, equal at the two copies of a sharp Poisson curve.
+    /// lambda (N x C) for these values on the same domain; couplings are the domain's.
+    Eigen::MatrixXd solve(const Domain& domain, const GivenValues& given) const;
+    /// E K^-1 E^T r (N x C), E from the unknowns to all knots: 0 at fixed knots, equal at the two copies of a sharp Poisson
+    /// curve.
     Eigen::MatrixXd apply_inverse(const Eigen::MatrixXd& residual) const;
 
 private:
