@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::vector<std::string> order = {"pvg",   "kernels",       "mesh",   "geodesic", "scene", "curves",
-                                        "solve", "cpu_reference", "vulkan", "gltf",     "app"};
+                                        "solve", "cpu_reference", "vulkan", "gltf",     "document", "app"};
 
 int rank(const std::string& stage) {
     for (std::size_t i = 0; i < order.size(); ++i)
@@ -54,7 +54,7 @@ void expect_only_above(const fs::path& folder, const std::string& stage) {
 TEST(Structure, StagesIncludeOnlyWhatStandsAbove) {
     const fs::path root = PVG_SOURCE_DIR;
     expect_only_above(root / "host/include/pvg", "pvg");
-    for (const char* stage : {"mesh", "geodesic", "scene", "curves", "solve", "vulkan", "gltf", "app"})
+    for (const char* stage : {"mesh", "geodesic", "scene", "curves", "solve", "vulkan", "gltf", "document", "app"})
         expect_only_above(root / "host" / stage, stage);
 }
 
