@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "cpu_reference/wide_rows.h"
 #include "kernels/shared.h"
 
 namespace pvg {
@@ -59,11 +60,12 @@ std::size_t evaluate_block(const float* coefficients, const std::uint32_t* list,
 }
 
 template <int channels>
-void evaluate_rows(const Field& field, std::size_t first, std::size_t last, float* values) {
+void evaluate_rows(const Field& field, std::size_t first, std::size_t last, bool wide, float* values) {
     const Table& table = field.table;
     if (first == last)
         return;
     const float* coefficients = field.coefficients.data();
+    std::vector<float> local;  // the coefficients of one cell's list
     auto cell = std::size_t(std::upper_bound(table.cell_first_row.begin(), table.cell_first_row.end(), first) -
                             table.cell_first_row.begin() - 1);
     for (std::size_t row = first; row < last; ++cell) {
@@ -72,6 +74,15 @@ void evaluate_rows(const Field& field, std::size_t first, std::size_t last, floa
         const std::uint32_t* list = table.indices.data() + table.cell_first_index[cell];
         const std::size_t stride = table.cell_first_index[cell + 1] - table.cell_first_index[cell];
         const float* weights = table.weights.data() + table.cell_first_weight[cell];
+        if (wide) {
+            local.resize(stride * channels);
+            for (std::size_t k = 0; k < stride; ++k)
+                std::copy_n(coefficients + std::size_t(list[k]) * channels, channels, local.data() + k * channels);
+            evaluate_rows_wide(channels, local.data(), stride, weights + (row - cell_begin) * stride, end - row,
+                               values + row * channels);
+            row = end;
+            continue;
+        }
         const std::size_t single =
             evaluate_block<channels, 4>(coefficients, list, stride, weights + (row - cell_begin) * stride, row, end, values);
         evaluate_block<channels, 1>(coefficients, list, stride, weights + (single - cell_begin) * stride, single, end, values);
@@ -134,9 +145,15 @@ std::array<float, 3> shading_normal(const Program& program, const std::vector<st
 }  // namespace
 
 Evaluation evaluate_on_cpu(const Program& program, int threads) {
+    Evaluation result;
+    evaluate_on_cpu(program, result, threads);
+    return result;
+}
+
+void evaluate_on_cpu(const Program& program, Evaluation& result, int threads, bool wide) {
+    wide = wide && wide_rows_supported();
     if (threads <= 0)
         threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    Evaluation result;
     result.values.resize(program.fields.size());
     for (std::size_t f = 0; f < program.fields.size(); ++f) {
         const Field& field = program.fields[f];
@@ -145,13 +162,13 @@ Evaluation evaluate_on_cpu(const Program& program, int threads) {
         for_ranges(field.table.row_count, threads, [&](std::size_t first, std::size_t last) {
             switch (field.table.channels) {
                 case 1:
-                    evaluate_rows<1>(field, first, last, values.data());
+                    evaluate_rows<1>(field, first, last, wide, values.data());
                     break;
                 case 4:
-                    evaluate_rows<4>(field, first, last, values.data());
+                    evaluate_rows<4>(field, first, last, wide, values.data());
                     break;
                 case 5:
-                    evaluate_rows<5>(field, first, last, values.data());
+                    evaluate_rows<5>(field, first, last, wide, values.data());
                     break;
                 default:
                     break;  // validate() admits no other count
@@ -167,7 +184,6 @@ Evaluation evaluate_on_cpu(const Program& program, int threads) {
     for_ranges(result.normal.size(), threads, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) result.normal[i] = shading_normal(program, result.position, i);
     });
-    return result;
 }
 
 }  // namespace pvg

@@ -8,5 +8,8 @@ namespace pvg {
 
 /// Requires validate(program). threads: 0 for all cores; the result does not depend on it.
 Evaluation evaluate_on_cpu(const Program& program, int threads = 0);
+/// The same into `result`, whose memory is used again where it is large enough. wide: eight rows at a time where the processor
+/// has AVX2; the bits do not depend on it.
+void evaluate_on_cpu(const Program& program, Evaluation& result, int threads = 0, bool wide = true);
 
 }  // namespace pvg

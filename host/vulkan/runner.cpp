@@ -382,18 +382,20 @@ void Runner::bind_sets() {
     }
 }
 
-void Runner::record(VkCommandBuffer commands) const {
+void Runner::barrier(VkCommandBuffer commands, VkPipelineStageFlags before, VkAccessFlags from, VkPipelineStageFlags after,
+                     VkAccessFlags to) const {
+    auto memory = typed<VkMemoryBarrier>(VK_STRUCTURE_TYPE_MEMORY_BARRIER);
+    memory.srcAccessMask = from;
+    memory.dstAccessMask = to;
+    device_.functions.CmdPipelineBarrier(commands, before, after, 0, 1, &memory, 0, nullptr, 0, nullptr);
+}
+
+void Runner::record_dispatches(VkCommandBuffer commands) const {
     const DeviceFunctions& vk = device_.functions;
-    const auto barrier = [&](VkPipelineStageFlags before, VkAccessFlags from, VkPipelineStageFlags after, VkAccessFlags to) {
-        auto memory = typed<VkMemoryBarrier>(VK_STRUCTURE_TYPE_MEMORY_BARRIER);
-        memory.srcAccessMask = from;
-        memory.dstAccessMask = to;
-        vk.CmdPipelineBarrier(commands, before, after, 0, 1, &memory, 0, nullptr, 0, nullptr);
-    };
     for (const Dispatch& dispatch : dispatches_) {
         if (dispatch.after_all) {
-            barrier(VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-                    VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+            barrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+                    VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
         }
         const Pipeline& pipeline = *dispatch.pipeline;
         vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline.get());
@@ -403,7 +405,12 @@ void Runner::record(VkCommandBuffer commands) const {
                             dispatch.push.data());
         vk.CmdDispatch(commands, dispatch.groups, 1, 1);
     }
-    barrier(VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
+}
+
+void Runner::record(VkCommandBuffer commands) const {
+    const DeviceFunctions& vk = device_.functions;
+    record_dispatches(commands);
+    barrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
             VK_ACCESS_TRANSFER_READ_BIT);
     const auto copy = [&](const Buffer& source, VkDeviceSize offset, VkDeviceSize bytes) {
         const VkBufferCopy region{0, offset, bytes};
@@ -413,7 +420,8 @@ void Runner::record(VkCommandBuffer commands) const {
     for (const FieldBuffers& field : fields_) copy(field.values, field.readback_offset, field.values_bytes);
     copy(positions_, positions_offset_, vertex_count_ * sizeof(Vector));
     copy(normals_, normals_offset_, normal_count_ * sizeof(Vector));
-    barrier(VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+    barrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_HOST_BIT,
+            VK_ACCESS_HOST_READ_BIT);
 }
 
 Evaluation Runner::read() const {

@@ -40,6 +40,8 @@ public:
     /// Records everything from the coefficients to the readback buffer. Before it, uploads must be visible to compute
     /// shaders; after it, results are visible to the host. The commands may be submitted again when they have finished.
     void record(VkCommandBuffer commands) const;
+    /// The same without the readback.
+    void record_dispatches(VkCommandBuffer commands) const;
     /// What the last finished submission wrote.
     Evaluation read() const;
 
@@ -77,6 +79,8 @@ private:
     void load_displacement(const Program& program, const Upload& upload);
     void load_normals(const Program& program, const Upload& upload);
     void bind_sets();
+    void barrier(VkCommandBuffer commands, VkPipelineStageFlags before, VkAccessFlags from, VkPipelineStageFlags after,
+                 VkAccessFlags to) const;
     void add_dispatch(Kernel kernel, bool texel, std::vector<Binding> bindings, const void* push, std::uint64_t items,
                       bool after_all);
     void clear();

@@ -191,5 +191,21 @@ TEST(CpuEvaluator, EmptyProgram) {
     EXPECT_TRUE(result.values.empty() && result.height.empty() && result.position.empty() && result.normal.empty());
 }
 
+TEST(CpuEvaluator, WideRowsChangeNoBit) {
+    for (int entries : {1, 3, 20, -16}) {
+        std::mt19937 random(31);
+        Program program;
+        program.height_first = program.corner_first = {0};
+        for (std::uint32_t channels : {1u, 4u, 5u}) {
+            program.fields.push_back(test::random_field(random, 3001, 200, channels, entries));
+            program.fields.push_back(test::neighbour_field(random, 9001, channels));
+        }
+        Evaluation narrow;
+        evaluate_on_cpu(program, narrow, 2, false);
+        EXPECT_EQ(test::first_difference(narrow, evaluate_on_cpu(program, 1)), "") << entries;
+        EXPECT_EQ(test::first_difference(narrow, evaluate_on_cpu(program, 2)), "") << entries;
+    }
+}
+
 }  // namespace
 }  // namespace pvg

@@ -56,6 +56,35 @@ inline Field random_field(std::mt19937& random, std::uint32_t rows, std::uint32_
     return field;
 }
 
+/// A table as builds make them: cells of 10 to 100 rows, one coefficient a cell, lists of 14 to 16 cells near by.
+inline Field neighbour_field(std::mt19937& random, std::uint32_t rows, std::uint32_t channels) {
+    Field field;
+    Table& table = field.table;
+    table.row_count = rows;
+    table.channels = channels;
+    table.cell_first_row = table.cell_first_index = table.cell_first_weight = {0};
+    while (table.cell_first_row.back() < rows)
+        table.cell_first_row.push_back(std::min(table.cell_first_row.back() + 10 + below(random, 91), rows));
+    table.cell_count = table.coefficient_count = static_cast<std::uint32_t>(table.cell_first_row.size()) - 1;
+    for (std::uint32_t cell = 0; cell < table.cell_count; ++cell) {
+        const std::uint32_t length = 14 + below(random, 3);
+        const std::uint32_t in_cell = table.cell_first_row[cell + 1] - table.cell_first_row[cell];
+        for (std::uint32_t k = 0; k < 16; ++k) {
+            const std::uint32_t near_by = cell + below(random, 200) + table.cell_count - std::min(table.cell_count, 100u);
+            table.indices.push_back(k < length ? near_by % table.cell_count : table.indices.back());
+        }
+        for (std::uint32_t r = 0; r < in_cell; ++r)
+            for (std::uint32_t k = 0; k < 16; ++k) table.weights.push_back(k < length ? uniform(random, -0.5f, 1.0f) : 0.0f);
+        table.cell_first_index.push_back(static_cast<std::uint32_t>(table.indices.size()));
+        table.cell_first_weight.push_back(static_cast<std::uint32_t>(table.weights.size()));
+    }
+    for (std::uint32_t row = 0; row < rows; ++row) table.row_vertex.push_back(row);
+    table.vertex_row = table.row_vertex;
+    for (std::uint64_t i = 0; i < std::uint64_t(table.coefficient_count) * channels; ++i)
+        field.coefficients.push_back(uniform(random, -2, 2));
+    return field;
+}
+
 /// A closed tube of rings x 16 vertices around a random axis curve, displaced by height terms of the fields (0 to most_terms
 /// a vertex). Every seventh vertex has no term. One shading normal a vertex, then one whose corners are all degenerate,
 /// one without corners, and one of collinear corners.
