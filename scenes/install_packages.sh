@@ -6,7 +6,7 @@ set -euo pipefail
 
 build=(ca-certificates cmake g++ ninja-build libeigen3-dev nlohmann-json3-dev libvalijson-dev libtinygltf-dev libcli11-dev
     libvulkan1 libvulkan-dev glslang-tools mesa-vulkan-drivers)
-test=(libgtest-dev libcgal-dev vulkan-validationlayers gnuplot-nox)
+test=(libgtest-dev libcgal-dev libsuitesparse-dev libopenblas-pthread-dev vulkan-validationlayers gnuplot-nox)
 
 case "${1:-}" in
     build) packages=("${build[@]}") ;;

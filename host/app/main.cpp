@@ -103,6 +103,10 @@ int main(int argc, char** argv) {
     devices_command->add_flag("--json", devices_options.json, "Print one JSON document instead of a table");
     add_common(*devices_command, common);
 
+    CLI::App* bench_command = app.add_subcommand("bench", "Time every stage and the rivals, side by side in one run");
+    bench_command->prefix_command();  // its own options: `pvg bench --help`
+    bench_command->set_help_flag();
+
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -119,6 +123,8 @@ int main(int argc, char** argv) {
             return make(make_options, console);
         if (*info_command)
             return info(info_options, console);
+        if (*bench_command)
+            return bench(bench_command->remaining());
         return devices(devices_options, console);
     } catch (const pvg::Error& error) {
         Console::fail(error.what());

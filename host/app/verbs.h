@@ -53,4 +53,8 @@ struct DevicesOptions {
 };
 int devices(const DevicesOptions& options, Console& console);
 
+/// Becomes the program pvg-bench, which stands beside this one. arguments: what follows the verb. Throws Error(usage) where it is
+/// not there.
+int bench(const std::vector<std::string>& arguments);
+
 }  // namespace pvg::app

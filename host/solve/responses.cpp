@@ -1,6 +1,7 @@
 #include "solve/responses.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <tuple>
 
@@ -16,6 +17,11 @@ namespace {
 constexpr GalerkinOptions response_options{.max_steps = 60, .reduction = 1e-7, .bounded = false};
 /// Columns solved together: the operators are read once for all of them.
 constexpr std::size_t batch = 8;
+/// Knots whose coefficients are summed up together: few enough to stay in the innermost cache.
+constexpr Eigen::Index block = 64;
+using Block = Eigen::Array<float, block, 1>;
+
+Eigen::Index whole_blocks(Eigen::Index knots) { return (knots + block - 1) / block * block; }
 
 void add_unique(std::vector<int>& list, int value) {
     if (std::find(list.begin(), list.end(), value) == list.end())
@@ -33,6 +39,8 @@ void subtract(GivenValues& from, const GivenValues& other) {
 Responses::Responses(const Domain& domain, const Knots& knots, const System& system, const EnergyForm& form, const Table& table,
                      const Eigen::MatrixXd& unbounded)
     : domain_(domain), knots_(knots), system_(system), form_(form), table_(table), first_lambda_(unbounded) {
+    first_lambda_.conservativeResize(whole_blocks(unbounded.rows()), Eigen::NoChange);
+    first_lambda_.bottomRows(first_lambda_.rows() - unbounded.rows()).setZero();
     find_same_stops();
     find_parts();
 }
@@ -97,7 +105,11 @@ int Responses::prepare(std::span<const Stop> stops) {
     for (std::size_t begin = 0; begin < missing.size(); begin += batch) {
         const std::span<const Stop> some(missing.data() + begin, std::min(batch, missing.size() - begin));
         const Eigen::MatrixXd lambda = solve(unit_values(domain_, knots_, some));
-        for (std::size_t k = 0; k < some.size(); ++k) columns_[some[k]] = lambda.col(static_cast<Eigen::Index>(k));
+        for (std::size_t k = 0; k < some.size(); ++k) {
+            Eigen::VectorXf& column = columns_[some[k]];
+            column = Eigen::VectorXf::Zero(first_lambda_.rows());
+            column.head(lambda.rows()) = lambda.col(static_cast<Eigen::Index>(k)).cast<float>();
+        }
     }
     return static_cast<int>(missing.size());
 }
@@ -110,7 +122,8 @@ int Responses::prepare_all() {
 
 const std::vector<float>& Responses::coefficients(std::span<const Control> controls) {
     std::vector<Stop> changed;
-    lambda_ = first_lambda_;
+    const auto knots = static_cast<Eigen::Index>(knots_.vertex.size());
+    moved_lambda_.resize(0, 0);
     for (std::size_t k = 0; k < controls.size(); ++k) {
         const Control& first = domain_.controls[k];
         const int control = static_cast<int>(k);
@@ -121,21 +134,32 @@ const std::vector<float>& Responses::coefficients(std::span<const Control> contr
         } else {
             GivenValues given = values_of_control(domain_, knots_, control, controls[k]);
             subtract(given, values_of_control(domain_, knots_, control, first));
-            lambda_ += solve(given);
+            if (moved_lambda_.size() == 0)
+                moved_lambda_ = first_lambda_;
+            moved_lambda_.topRows(knots) += solve(given);
         }
     }
     prepare(changed);
-    std::map<Stop, Eigen::RowVectorXd> change;  // by column
+    std::map<Stop, Eigen::RowVectorXd> by_column;
     for (const Stop& stop : changed)
-        change.try_emplace(same_as_.at(stop), Eigen::RowVectorXd::Zero(domain_.channels)).first->second +=
+        by_column.try_emplace(same_as_.at(stop), Eigen::RowVectorXd::Zero(domain_.channels)).first->second +=
             controls[stop.first].value.row(stop.second) - domain_.controls[stop.first].value.row(stop.second);
-    for (const auto& [stop, difference] : change) lambda_.noalias() += columns_.at(stop) * difference;
-    bound(controls, lambda_);
+    std::vector<std::pair<const float*, Eigen::RowVectorXf>> change;
+    for (const auto& [stop, difference] : by_column) change.emplace_back(columns_.at(stop).data(), difference.cast<float>());
 
     coefficients_.resize(static_cast<std::size_t>(table_.coefficient_count) * table_.channels);
-    std::transform(lambda_.data(), lambda_.data() + lambda_.size(), coefficients_.begin(),
-                   [](double x) { return static_cast<float>(x); });
-    float* out = coefficients_.data() + lambda_.size();
+    switch (domain_.channels) {
+        case 1:
+            combine<1>(change, bounds(controls));
+            break;
+        case 4:
+            combine<4>(change, bounds(controls));
+            break;
+        default:
+            combine<5>(change, bounds(controls));
+            break;
+    }
+    float* out = coefficients_.data() + knots * domain_.channels;
     for (const ControlSum& sum : domain_.source_values) {
         const Eigen::RowVectorXd value = value_of(sum, controls, domain_.channels);
         for (Eigen::Index c = 0; c < value.size(); ++c) *out++ = static_cast<float>(value[c]);
@@ -143,11 +167,39 @@ const std::vector<float>& Responses::coefficients(std::span<const Control> contr
     return coefficients_;
 }
 
-void Responses::bound(std::span<const Control> controls, RowMajor& lambda) const {
+/// What changed is summed in single precision, since that is what the coefficients end in. One pass over the knots, all columns
+/// and channels of a block while it is in the innermost cache.
+template <int channels>
+void Responses::combine(std::span<const std::pair<const float*, Eigen::RowVectorXf>> change, const Bounds& within) {
+    const Eigen::MatrixXd& from = moved_lambda_.size() > 0 ? moved_lambda_ : first_lambda_;
+    const auto knots = static_cast<Eigen::Index>(knots_.vertex.size());
+    std::array<Block, channels> sum;
+    for (Eigen::Index begin = 0; begin < knots; begin += block) {
+        for (Block& part : sum) part.setZero();
+        for (const auto& [column, difference] : change) {
+            const Block response = Eigen::Map<const Block>(column + begin);
+            for (int c = 0; c < channels; ++c) sum[c] += response * difference[c];
+        }
+        const Eigen::Index end = std::min(knots, begin + block);
+        for (Eigen::Index j = begin; j < end; ++j) {
+            float* out = coefficients_.data() + j * channels;
+            const int p = within.any ? part_of_knot_[j] : none;
+            for (int c = 0; c < channels; ++c) {
+                double value = from(j, c) + double{sum[c][j - begin]};
+                if (p != none)
+                    value = std::min(std::max(value, within.low(p, c)), within.high(p, c));
+                out[c] = static_cast<float>(value);
+            }
+        }
+    }
+}
+
+Responses::Bounds Responses::bounds(std::span<const Control> controls) const {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const int channels = domain_.channels;
-    RowMajor low = RowMajor::Constant(static_cast<Eigen::Index>(parts_.size()), channels, infinity), high = -low;
-    bool any = false;
+    Bounds result{RowMajor::Constant(static_cast<Eigen::Index>(parts_.size()), channels, infinity), {}, false};
+    auto& [low, high, any] = result;
+    high = -low;
     for (Eigen::Index p = 0; p < low.rows(); ++p) {
         const PartControls& part = parts_[p];
         for (int c = 0; c < channels; ++c) {
@@ -168,11 +220,7 @@ void Responses::bound(std::span<const Control> controls, RowMajor& lambda) const
             any |= !open;
         }
     }
-    if (!any)
-        return;
-    for (Eigen::Index j = 0; j < lambda.rows(); ++j)
-        if (const int p = part_of_knot_[j]; p != none)
-            lambda.row(j) = lambda.row(j).cwiseMax(low.row(p)).cwiseMin(high.row(p));
+    return result;
 }
 
 }  // namespace pvg

@@ -47,7 +47,13 @@ private:
 
     void find_same_stops();
     void find_parts();
-    void bound(std::span<const Control> controls, RowMajor& lambda) const;
+    struct Bounds {
+        RowMajor low, high;  // parts x C; infinite where a channel is not bounded
+        bool any = false;
+    };
+    Bounds bounds(std::span<const Control> controls) const;
+    template <int channels>
+    void combine(std::span<const std::pair<const float*, Eigen::RowVectorXf>> change, const Bounds& within);
     Eigen::MatrixXd solve(const GivenValues& given) const;
 
     const Domain& domain_;
@@ -55,12 +61,12 @@ private:
     const System& system_;
     const EnergyForm& form_;
     const Table& table_;
-    RowMajor first_lambda_;                    // N x C
+    Eigen::MatrixXd first_lambda_;             // N x C
     std::map<Stop, Stop> same_as_;             // the first stop that enters with the same weights
-    std::map<Stop, Eigen::VectorXd> columns_;  // N each, by first stop of its kind
+    std::map<Stop, Eigen::VectorXf> columns_;  // N each, filled up with 0 to whole blocks, by first stop of its kind
     std::vector<int> part_of_knot_;            // N
     std::vector<PartControls> parts_;
-    RowMajor lambda_;
+    Eigen::MatrixXd moved_lambda_;  // N x C: first_lambda_ and what moved stops add
     std::vector<float> coefficients_;
 };
 
