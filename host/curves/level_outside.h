@@ -2,6 +2,7 @@
 // the patch, and the field outside is what it would be without the patch.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -17,8 +18,9 @@ namespace pvg {
 /// along the border much finer than `width` (of the ring or strip), which die out beside it and which the mesh cannot resolve,
 /// are left alone. The minimiser is a harmonic function cut off outside the adjustable faces; its border values solve (M + (share
 /// * width)^2 L) mu = -sigma_0, M_ij the integral of H_i H_j over the adjustable faces, H_i harmonic and 1 at border vertex i
-/// (conjugate gradients; M and L are never formed).
+/// (conjugate gradients; M and L are never formed). The share starts at 0.05 and is halved until the force left on a border
+/// vertex is no more than `most` in the root mean square, or until it is a sixteenth of that.
 std::vector<double> level_outside(const PatchPoisson& own, double width, std::span<const char> adjustable,
-                                  const Eigen::VectorXd& load);
+                                  const Eigen::VectorXd& load, double most = std::numeric_limits<double>::infinity());
 
 }  // namespace pvg

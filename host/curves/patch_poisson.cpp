@@ -1,9 +1,36 @@
 #include "curves/patch_poisson.h"
 
-#include "mesh/intrinsic.h"
+#include <map>
+
+#include "mesh/border_points.h"
 #include "pvg/status.h"
 
 namespace pvg {
+namespace {
+
+/// here, zero: per vertex of the part the one that its copies are, and whether that is held at 0. The two sides of a slit are
+/// one vertex each, so the edges between them are the two sides of one.
+BorderConditions border_conditions(const SlitSurface& part, std::span<const int> here, std::span<const char> zero) {
+    const Surface& surface = part.surface;
+    const int count = surface.vertex_count();
+    BorderConditions border{std::vector<char>(count, 0), std::vector<int>(count, none)};
+    for (int v = 0; v < count; ++v) border.fixed[v] = zero[here[v]];
+    std::map<std::pair<int, int>, int> by_ends;
+    for (int h = 0; h < surface.halfedge_count(); ++h) {
+        if (surface.twin(h) != none)
+            continue;
+        const int from = surface.origin(h), to = surface.target(h);
+        if (const auto found = by_ends.find({here[to], here[from]}); found != by_ends.end()) {
+            border.other_side[from] = found->second;
+            border.other_side[found->second] = from;
+        } else {
+            by_ends[{here[from], here[to]}] = from;
+        }
+    }
+    return border;
+}
+
+}  // namespace
 
 PatchPoisson::PatchPoisson(const SlitSurface& part, int parent_vertices, std::span<const char> zero_halfedges)
     : vertex_(parent_vertices, none) {
@@ -26,9 +53,7 @@ PatchPoisson::PatchPoisson(const SlitSurface& part, int parent_vertices, std::sp
                 zero[faces_[f][k]] = zero[faces_[f][(k + 1) % 3]] = 1;
     }
 
-    IntrinsicTriangulation triangulation = intrinsic_triangulation(surface);
-    make_delaunay(triangulation);
-    cut_stiffness_ = cotan_stiffness(triangulation, surface.vertex_count());
+    cut_stiffness_ = surface_stiffness(surface, border_conditions(part, here_, zero));
     unknown_.assign(count, none);
     for (int v = 0; v < count; ++v)
         if (!zero[v])

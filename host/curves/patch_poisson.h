@@ -1,5 +1,6 @@
 // Linear finite elements on a small part of the surface, zero on some of its vertices and natural elsewhere: what the
-// profiles of Poisson regions and of wide Poisson curves are computed with. Stiffness on the intrinsic Delaunay triangulation.
+// profiles of Poisson regions and of wide Poisson curves are computed with. Stiffness on the intrinsic Delaunay triangulation,
+// its border edges split where they face obtuse angles.
 #pragma once
 
 #include <memory>
@@ -25,6 +26,8 @@ public:
     /// The vertex here of a parent vertex, or none.
     int vertex_of(int parent) const { return vertex_[parent]; }
     int vertex_count() const { return static_cast<int>(unknown_.size()); }
+    /// How many of them are held at 0.
+    int border_count() const { return vertex_count() - unknown_count_; }
 
     /// Integrals of a function constant on each face of the part over the vertices' hat functions (V).
     Eigen::VectorXd load_of(std::span<const double> face_value) const;

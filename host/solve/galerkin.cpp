@@ -1,5 +1,7 @@
 #include "solve/galerkin.h"
 
+#include <algorithm>
+
 #include "solve/bounds.h"
 #include "solve/given_values.h"
 
@@ -80,16 +82,31 @@ int minimise_energy(const EnergyForm& form, const Table& table, const System& sy
     const Eigen::RowVectorXd rounding = 1e-24 * (u.array() * internal.array()).colwise().sum();
     const Eigen::RowVectorXd enough = (size * (options.reduction * options.reduction)).cwiseMax(rounding);
     coefficients.setZero();
+    // Largest change of the last steps before options.steps, of the range.
+    Eigen::RowVectorXd late_change = Eigen::RowVectorXd::Zero(channels);
     int steps = 0;
-    for (; steps < options.max_steps && (size.array() > enough.array()).any(); ++steps) {
+    const auto rests = [&](Eigen::Index c) {
+        return !(size[c] > enough[c]) || (steps >= options.steps && late_change[c] <= options.settled);
+    };
+    const auto all_rest = [&] {
+        for (Eigen::Index c = 0; c < channels; ++c)
+            if (!rests(c))
+                return false;
+        return true;
+    };
+    for (; steps < options.max_steps && !all_rest(); ++steps) {
         coefficients.topRows(knots) = direction;
         const Eigen::MatrixXd change = psi.gather(form.S * psi.values(coefficients)).topRows(knots);
         const Eigen::RowVectorXd curvature = dot(direction, change);
         for (Eigen::Index c = 0; c < channels; ++c) {
-            if (!(size[c] > enough[c]) || !(curvature[c] > 0))
+            if (rests(c) || !(curvature[c] > 0))
                 continue;
-            lambda.col(c) += size[c] / curvature[c] * direction.col(c);
-            residual.col(c) -= size[c] / curvature[c] * change.col(c);
+            const double length = size[c] / curvature[c];
+            lambda.col(c) += length * direction.col(c);
+            residual.col(c) -= length * change.col(c);
+            const double range = lambda.col(c).maxCoeff() - lambda.col(c).minCoeff();
+            if (steps + 3 >= options.steps && steps < options.steps && range > 0)
+                late_change[c] = std::max(late_change[c], length * direction.col(c).cwiseAbs().maxCoeff() / range);
         }
         const Eigen::MatrixXd preconditioned = system.apply_inverse(residual);
         const Eigen::RowVectorXd next = dot(residual, preconditioned);

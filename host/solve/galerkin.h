@@ -17,8 +17,10 @@
 namespace pvg {
 
 struct GalerkinOptions {
-    int max_steps = 24;
-    double reduction = 1e-5;  ///< a channel rests when its residual, in the norm of K^-1, has fallen by this factor
+    int max_steps = 64;
+    double reduction = 1e-6;  ///< a channel rests when its residual, in the norm of K^-1, has fallen by this factor,
+    int steps = 24;           ///< or after so many steps
+    double settled = 3e-5;    ///< if none of the last three changed a lambda by more than this share of their range
     bool bounded = true;      ///< between the curves' values where there is neither source nor jump (solve/bounds.h)
 };
 

@@ -73,7 +73,13 @@ void PatchSolver::gather(int cell) {
     for (std::size_t at = 0; at < vertices_.size(); ++at) {
         const int v = vertices_[at];
         for (Eigen::SparseMatrix<double>::InnerIterator entry(space_.S, v); entry; ++entry) reach(static_cast<int>(entry.row()));
-        for (int copy = space_.partner[v]; copy != none && copy != v; copy = space_.partner[copy]) reach(copy);
+        // A sharp Poisson curve's copies come together, whatever cells they are in: S is without negative weights only where both
+        // are one unknown.
+        for (int copy = space_.partner[v]; copy != none && copy != v; copy = space_.partner[copy]) {
+            if (local_[copy] == none)
+                local_[copy] = waiting;
+            reach(copy);
+        }
     }
     for (int v : queue_)
         if (local_[v] == waiting)

@@ -60,6 +60,23 @@ void PatchSolver::spread(std::vector<Candidate>& candidates, int wanted) const {
         });
     };
     choose_copies(0);
+    // Across a sharp Poisson curve the field is known as far as its jump is: without a listed couple the knots beyond would count
+    // as if there were none. Two couples tell how it goes on along the curve.
+    std::vector<int> coupled;
+    for (int i = 1; i < count; ++i)
+        if (space_.partner[vertex(i)] != none)
+            coupled.push_back(i);
+    std::stable_sort(coupled.begin(), coupled.end(),
+                     [&](int a, int b) { return candidates[a].distance < candidates[b].distance; });
+    int couples = 2;
+    for (int i : coupled) {
+        if (couples == 0)
+            break;
+        if (chosen[i])
+            continue;
+        choose_copies(i);
+        --couples;
+    }
     while (static_cast<int>(order.size()) < wanted) {
         int best = none;
         double most = -1;
@@ -115,6 +132,18 @@ void PatchSolver::choose_list(Patch& patch) {
         const int v = local_[space_.knots.vertex[c]];
         if (v != none && ring_of_cell_[c] <= options_.rings)
             candidates.push_back({ring_of_cell_[c], std::abs(place_[v]), c});
+    }
+    // Points split into the border join a vertex to both sides of a sharp Poisson curve at once, so that one copy may be within
+    // reach and the other not.
+    for (std::size_t i = 0, reached = candidates.size(); i < reached; ++i) {
+        const Candidate candidate = candidates[i];
+        for_copies(local_[space_.knots.vertex[candidate.knot]], [&](int copy) {
+            const int knot = space_.knots.knot_of_vertex[vertices_[copy]];
+            if (knot != none && ring_of_cell_[knot] > options_.rings) {
+                ring_of_cell_[knot] = options_.rings;
+                candidates.push_back({options_.rings, std::abs(place_[copy]), knot});
+            }
+        });
     }
     std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
         if (a.ring != b.ring)

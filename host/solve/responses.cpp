@@ -14,7 +14,7 @@ namespace pvg {
 namespace {
 
 /// Far below what the coefficients of a fresh build leave (GalerkinOptions), so that a changed value adds no error to speak of.
-constexpr GalerkinOptions response_options{.max_steps = 60, .reduction = 1e-7, .bounded = false};
+constexpr GalerkinOptions response_options{.max_steps = 60, .reduction = 1e-7, .settled = 0, .bounded = false};
 /// Columns solved together: the operators are read once for all of them.
 constexpr std::size_t batch = 8;
 /// Knots whose coefficients are summed up together: few enough to stay in the innermost cache.

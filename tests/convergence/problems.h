@@ -2,7 +2,10 @@
 // holds are shaken, so that nothing rests on the symmetry of a grid; curves, rims and the borders of sources run along edges.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -200,6 +203,82 @@ inline AnalyticProblem torus_problem(int n, int mode = 2) {
         else if (v < 0)
             v += 2 * std::numbers::pi;
         return mode == 0 ? torus.ramp(v) : torus.mode(mode, angle_of(p[vertex]), v);
+    });
+}
+
+/// The polyhedral flat torus slit along its lower ring; each of its triangles in n^2, the vertices inside them shaken.
+inline AnalyticProblem flat_torus_problem(int n) {
+    const analytic::FlatTorus torus{8, 1.0, 0.15, 2};
+    const analytic::FlatTorus::Joint outer = torus.outer(), inner = torus.inner();
+    const int N = torus.points;
+    const double a = torus.side();
+    struct Corner {
+        Point place;
+        double s, v;
+    };
+    const auto ring = [&](int i, double z, double turned) {
+        const double angle = 2 * std::numbers::pi * i / N + turned;
+        return Point(std::cos(angle), std::sin(angle), z);
+    };
+    // Lower ends A at v = 0 (outer) and v = length (inner), upper ends B between.
+    const auto low = [&](int i) { return Corner{ring(i, 0, 0), i * a, 0}; };
+    const auto up = [&](int j) { return Corner{ring(j, torus.height, torus.twist), j * a + outer.along, outer.across}; };
+    const auto back = [&](int i) { return Corner{ring(i, 0, 0), i * a + torus.shift(), outer.across + inner.across}; };
+    std::vector<std::array<Corner, 3>> triangles;
+    for (int i = 0; i < N; ++i) {
+        const int t = i + torus.turn;
+        triangles.push_back({low(i), low(i + 1), up(i)});
+        triangles.push_back({low(i + 1), up(i + 1), up(i)});
+        triangles.push_back({back(i + 1), back(i), up(t)});
+        triangles.push_back({back(i + 1), up(t), up(t + 1)});
+    }
+    Random random(9);
+    std::vector<Point> points;
+    std::vector<Eigen::Vector2d> unfolded;
+    std::map<std::array<long, 3>, int> number;
+    std::vector<Face> faces;
+    for (const auto& [p, q, r] : triangles) {
+        std::vector<std::vector<int>> at(n + 1);
+        for (int i = 0; i <= n; ++i)
+            for (int j = 0; i + j <= n; ++j) {
+                double x = i, y = j;
+                if (i > 0 && j > 0 && i + j < n) {
+                    x += random.real(-0.2, 0.2);
+                    y += random.real(-0.2, 0.2);
+                }
+                const double wq = x / n, wr = y / n, wp = 1 - wq - wr;
+                const Point place = wp * p.place + wq * q.place + wr * r.place;
+                const auto key = [&](int k) { return std::lround(place[k] * 1e7); };
+                const auto [found, fresh] = number.try_emplace({key(0), key(1), key(2)}, static_cast<int>(points.size()));
+                if (fresh) {
+                    points.push_back(place);
+                    unfolded.emplace_back(wp * p.s + wq * q.s + wr * r.s, wp * p.v + wq * q.v + wr * r.v);
+                }
+                at[i].push_back(found->second);
+            }
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; i + j < n; ++j) {
+                faces.push_back({at[i][j], at[i + 1][j], at[i][j + 1]});
+                if (i + j + 1 < n)
+                    faces.push_back({at[i + 1][j], at[i + 1][j + 1], at[i][j + 1]});
+            }
+    }
+    const Surface whole(std::move(points), std::move(faces));
+    std::vector<std::pair<double, int>> along;
+    for (int v = 0; v < whole.vertex_count(); ++v)
+        if (std::abs(whole.point(v).z()) < 1e-9)
+            along.emplace_back(angle_of(whole.point(v)), v);
+    std::sort(along.begin(), along.end());
+    std::vector<Chain> chains(1);
+    for (const auto& [angle, v] : along) chains[0].vertices.push_back(v);
+    chains[0].vertices.push_back(along.front().second);
+    chains[0].left = chains[0].right = [](const Point&) { return 0.0; };
+    Domain domain = slit_domain(whole, chains);
+    const std::vector<int> parent = domain.vertex_parent;
+    return with_truth("flat torus", std::move(domain), [&](int v) {
+        const Eigen::Vector2d& at = unfolded[parent[v]];
+        // On the slit the inner joint's unfolding may have come first; the value is the same.
+        return torus.mode(1, at[0], at[1]);
     });
 }
 

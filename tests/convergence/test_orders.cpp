@@ -64,6 +64,13 @@ TEST(Orders, Torus) {
 TEST(Orders, TorusRamp) {
     expect_second_order([](int n) { return torus_problem(n, 0); }, {20, 28, 40}, 0.012);
 }
+TEST(Orders, FlatTorus) {
+    const AnalyticProblem problem = flat_torus_problem(4);
+    const Surface& surface = problem.domain.surface;
+    for (int v = 0; v < surface.vertex_count(); ++v)
+        ASSERT_NEAR(surface.angle_sum(v), (surface.is_border_vertex(v) ? 1 : 2) * std::numbers::pi, 1e-9) << v;
+    expect_second_order(flat_torus_problem, {6, 12, 24}, 0.01);
+}
 TEST(Orders, CylinderJump) { expect_second_order(cylinder_jump_problem, {8, 16, 32}, 0.004); }
 TEST(Orders, CylinderWideStep) { expect_second_order(cylinder_wide_step_problem, {8, 16, 32}, 0.005); }
 

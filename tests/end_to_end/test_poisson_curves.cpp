@@ -61,8 +61,10 @@ TEST(PoissonCurves, SharpOnADisk) {
 
 TEST(PoissonCurves, WideOnADisk) {
     const Plane plane(20000);
-    // The last one's strips are less than three edges of the mesh wide: what they leave outside is not below 1e-3 then.
-    for (const auto& [radius, width, bar] : {std::array{0.2, 0.05, 1e-3}, {0.2, 0.1, 1e-3}, {0.1, 0.02, 4e-3}}) {
+    // Strips of 14, 7, 2.8, 1.7 and 0.8 edges of the mesh. What such narrow ones show inside themselves is the mesh's resolution:
+    // the last two are held to what they leave beside them and to not overshooting.
+    for (const auto& [radius, width, bar] :
+         {std::array{0.2, 0.1, 0.8}, {0.2, 0.05, 0.8}, {0.1, 0.02, 5.0}, {0.1, 0.012, 100.0}, {0.1, 0.006, 100.0}}) {
         const Decorated d = decorate(
             {plane.rim(0.45, {{"height", 0.0}}), poisson_curve(plane.circle(0, 0, radius), jump, width / plane.diagonal)},
             plane.mesh, bbox);
@@ -73,13 +75,22 @@ TEST(PoissonCurves, WideOnADisk) {
             });
             std::printf("radius %g, width %g, %s: off by %.1e of the jump\n", radius, width, inside ? "inside" : "outside",
                         error);
-            EXPECT_LT(error, bar);
+            EXPECT_LT(error, 1e-3);
         }
+        double low = 0, high = 0;
+        for (int v = 0; v < d.vertex_count(); ++v)
+            if (d.reached(d.layer().height_domain, v)) {
+                low = std::min(low, d.height(v) / jump);
+                high = std::max(high, d.height(v) / jump);
+            }
+        std::printf("  between %.4f and %.4f of the jump\n", low, high);
+        EXPECT_GT(low, -0.02);
+        EXPECT_LT(high, 1.02);
         const analytic::DiskStep u{radius, width, jump};
         const Errors e = height_errors(d, jump, [&](const Point& p, int) { return u((p - plane.middle).norm()); });
         std::printf("  against the closed form: mean %.4f %%, max %.4f %%\n", e.mean, e.max);
         EXPECT_LT(e.mean, 0.1);
-        EXPECT_LT(e.max, bar > 1e-3 ? 4 : 0.8);
+        EXPECT_LT(e.max, bar);
     }
 }
 

@@ -12,6 +12,7 @@ namespace pvg::fixtures {
 inline Domain squeezed(Domain domain, double factor) {
     domain.surface = transformed(
         domain.surface, [&](const Point& p) { return Point(p.x() + 0.5 * p.y(), factor * p.y(), 0.1 * std::sin(4 * p.x())); });
+    measure_edges(domain);
     return domain;
 }
 

@@ -11,8 +11,7 @@
 
 #include <Eigen/SparseCholesky>
 
-#include "curves/domain.h"
-#include "fixtures/meshes.h"
+#include "fixtures/domains.h"
 #include "mesh/intrinsic.h"
 #include "pvg/table.h"
 
@@ -114,14 +113,7 @@ inline Domain slit_domain(const Surface& unslit, const std::vector<Chain>& chain
             for (int v = 0; v < vertices; ++v)
                 if (parent[v] == end && (chain.left || chain.right))
                     domain.feature[v] = 1;
-    domain.edge_length.assign(vertices, 0);
-    std::vector<int> valence(vertices, 0);
-    for (int h = 0; h < domain.surface.halfedge_count(); ++h)
-        for (int v : {domain.surface.origin(h), domain.surface.target(h)}) {
-            domain.edge_length[v] += domain.surface.length(h);
-            ++valence[v];
-        }
-    for (int v = 0; v < vertices; ++v) domain.edge_length[v] /= valence[v];
+    measure_edges(domain);
     return domain;
 }
 

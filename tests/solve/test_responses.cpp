@@ -16,7 +16,7 @@ namespace pvg {
 namespace {
 
 constexpr int n = 24;
-constexpr GalerkinOptions exact{.max_steps = 400, .reduction = 1e-9, .bounded = false};
+constexpr GalerkinOptions exact{.max_steps = 400, .reduction = 1e-9, .settled = 0, .bounded = false};
 
 int at(int x, int y) { return y * (n + 1) + x; }
 
