@@ -36,7 +36,7 @@ struct Solved {
             const SolvedDomain& solved = build.domains[d];
             controls.push_back(domain.controls);
             responses.push_back(scene.basis == BasisKind::local
-                                    ? std::make_unique<Responses>(domain, solved.knots, solved.system, solved.form,
+                                    ? std::make_unique<Responses>(domain, solved.knots, solved.system, solved.matrix,
                                                                   build.program.fields[d].table, solved.unbounded)
                                     : nullptr);
         }

@@ -170,14 +170,15 @@ Build build(const Scene& scene, const MeshInput& mesh, const BuildOptions& optio
         Field field;
         field.table = basis_table(space, voronoi, basis_choice(scene), {options.threads, options.on_progress});
         clock.enter("system");
-        Coefficients solved = solve_coefficients(space, voronoi, system, field.table, basis_choice(scene), cell_lambda);
+        Coefficients solved =
+            solve_coefficients(space, voronoi, system, field.table, basis_choice(scene), cell_lambda, options.threads);
         field.coefficients = std::move(solved.values);
         b.program.fields.push_back(std::move(field));
         SolvedDomain& kept = b.domains.emplace_back(
             SolvedDomain{{}, std::move(voronoi), std::move(system), std::move(cell_lambda), std::move(solved.lambda), {}, {}});
         if (options.keep_forms) {
             kept.unbounded = std::move(solved.unbounded);
-            kept.form = std::move(static_cast<EnergyForm&>(space));
+            kept.matrix = std::move(solved.matrix);
         }
         kept.knots = std::move(knots);
     }

@@ -13,8 +13,8 @@
 #include "pvg/program.h"
 #include "pvg/status.h"
 #include "scene/scene.h"
-#include "solve/energy_form.h"
 #include "solve/field.h"
+#include "solve/galerkin_matrix.h"
 #include "solve/knots.h"
 #include "solve/system.h"
 #include "solve/voronoi.h"
@@ -30,7 +30,7 @@ struct MeshInput {
 
 struct BuildOptions {
     int threads = 0;          ///< 0: all cores; the result does not depend on it
-    bool keep_forms = false;  ///< SolvedDomain::form and unbounded are kept, for editing values (solve/responses.h)
+    bool keep_forms = false;  ///< SolvedDomain::matrix and unbounded are kept, for editing values (solve/responses.h)
     /// Called at the start of each stage with its name ("curves", "knots", "voronoi", "system", "basis").
     std::function<void(const std::string&)> on_stage;
     /// Within the stage "basis" where that takes long: the part of a domain's columns that is done, 0 to 1. Called, as on_stage,
@@ -46,7 +46,7 @@ struct SolvedDomain {
     Eigen::MatrixXd cell_lambda;  ///< knots x channels: control coefficients of the cell system
     Eigen::MatrixXd lambda;       ///< knots x channels: those that the program evaluates with (solve/field.h)
     Eigen::MatrixXd unbounded;    ///< knots x channels: lambda before it was put between the curves' values; empty: not kept
-    EnergyForm form;              ///< empty: not kept
+    GalerkinMatrix matrix;        ///< empty: not kept
 };
 
 /// Everything from the welded input to the evaluators' program.

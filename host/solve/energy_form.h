@@ -6,6 +6,9 @@
 
 #include <Eigen/SparseCore>
 
+#include "curves/domain.h"
+#include "mesh/border_points.h"
+
 namespace pvg {
 
 /// V vertices.
@@ -14,5 +17,10 @@ struct EnergyForm {
     std::vector<int> load_first;    ///< V + 1
     std::vector<std::pair<int, double>> loads;  ///< per vertex: (source, integral of its unit profile times the hat function)
 };
+
+/// Which border edges of a domain have given ends, and which pairs of them are the two sides of a sharp Poisson curve.
+BorderConditions border_conditions(const Domain& domain);
+
+EnergyForm energy_form(const Domain& domain);
 
 }  // namespace pvg

@@ -83,15 +83,16 @@ Table basis_table(const PatchSpace& space, const Voronoi& voronoi, const BasisCh
 }
 
 Coefficients solve_coefficients(const PatchSpace& space, const Voronoi& voronoi, const System& system, const Table& table,
-                                const BasisChoice& choice, const Eigen::MatrixXd& cell_lambda) {
-    Coefficients result{cell_lambda, cell_lambda, {}};
+                                const BasisChoice& choice, const Eigen::MatrixXd& cell_lambda, int threads) {
+    Coefficients result{cell_lambda, cell_lambda, {}, {}};
     if (choice.kind == BasisKind::exact) {
         result.values = vertex_values(GreenBasis(space, voronoi).sum(cell_lambda), cell_lambda, space, table);
         return result;
     }
     const Eigen::MatrixXd source = given_values(space.domain, space.knots.vertex).source;
     if (choice.kind == BasisKind::local) {
-        minimise_energy(space, table, system, source, {}, result.unbounded);
+        result.matrix = galerkin_matrix(space, table, static_cast<int>(cell_lambda.rows()), threads);
+        minimise_energy(result.matrix, system, source, {.threads = threads}, result.unbounded);
         result.lambda = result.unbounded;
         if (system.unknowns() > 0)
             keep_between_bounds(space.domain, space.knots, result.lambda);

@@ -8,6 +8,7 @@
 
 #include "pvg/program.h"
 #include "scene/scene.h"
+#include "solve/galerkin_matrix.h"
 #include "solve/patch_space.h"
 #include "solve/system.h"
 #include "solve/voronoi.h"
@@ -35,13 +36,14 @@ struct Coefficients {
     Eigen::MatrixXd lambda;     ///< N x C: the knots' control coefficients
     Eigen::MatrixXd unbounded;  ///< N x C: the same before they were put between the curves' values (solve/bounds.h)
     std::vector<float> values;  ///< Field::coefficients
+    GalerkinMatrix matrix;      ///< local: what lambda is optimal for
 };
 
 /// From the cell system's lambda. local: the energy-optimal ones (solve/galerkin.h). green, exact: the cell system's own, which
 /// the paper's formula asks for; exact: the untruncated sum, Dirichlet vertices and copies on sharp Poisson curves at their
 /// knot's value.
 Coefficients solve_coefficients(const PatchSpace& space, const Voronoi& voronoi, const System& system, const Table& table,
-                                const BasisChoice& choice, const Eigen::MatrixXd& cell_lambda);
+                                const BasisChoice& choice, const Eigen::MatrixXd& cell_lambda, int threads = 0);
 
 /// lambda (N x C), then source values (sources x C), as Field::coefficients has them.
 std::vector<float> coefficient_values(const Eigen::MatrixXd& lambda, const Eigen::MatrixXd& source);

@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 
 #include "pvg/table.h"
-#include "solve/energy_form.h"
+#include "solve/galerkin_matrix.h"
 #include "solve/patch_space.h"
 #include "solve/system.h"
 
@@ -21,12 +21,13 @@ struct GalerkinOptions {
     double reduction = 1e-6;  ///< a channel rests when its residual, in the norm of K^-1, has fallen by this factor,
     int steps = 24;           ///< or after so many steps
     double settled = 3e-5;    ///< if none of the last three changed a lambda by more than this share of their range
+    int threads = 0;          ///< 0: all cores; the result does not depend on it
     bool bounded = true;      ///< between the curves' values where there is neither source nor jump (solve/bounds.h)
 };
 
 /// Improves lambda (N x C) in place for the source coefficients `source` (sources x C); fixed knots and jumps stay, nothing is
 /// bounded. Returns the steps taken. Deterministic.
-int minimise_energy(const EnergyForm& form, const Table& table, const System& system, const Eigen::MatrixXd& source,
+int minimise_energy(const GalerkinMatrix& matrix, const System& system, const Eigen::MatrixXd& source,
                     const GalerkinOptions& options, Eigen::MatrixXd& lambda);
 
 /// The same for the values that the domain holds now, and within bounds where the options ask for it. Requires the space, table

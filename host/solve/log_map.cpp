@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <span>
 
 namespace pvg {
 
@@ -11,46 +12,87 @@ using Complex = std::complex<double>;
 
 namespace {
 
+/// std::complex without its care for infinities and overflow: lengths of a mesh are far from both, and this is most of what a map
+/// costs.
+struct Vector {
+    double x = 0, y = 0;
+    friend Vector operator+(Vector a, Vector b) { return {a.x + b.x, a.y + b.y}; }
+    friend Vector operator-(Vector a, Vector b) { return {a.x - b.x, a.y - b.y}; }
+    friend Vector operator*(double s, Vector a) { return {s * a.x, s * a.y}; }
+    /// The complex product: turned and scaled.
+    friend Vector operator*(Vector a, Vector b) { return {a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x}; }
+    double norm() const { return x * x + y * y; }
+    double size() const { return std::sqrt(norm()); }
+    Vector mirrored() const { return {x, -y}; }
+};
+Vector plain(Complex z) { return {z.real(), z.imag()}; }
+
 /// The place of a face's third corner c from those of a and b; edge: the length of ab, turn: c - a over b - a in the face's
 /// plane. The face is laid flat with the centre where the distances of a and b have it; that gives the distance of c, and c's
 /// direction lies between theirs as it does there. Where the surface is not flat, places of a and b are not as far apart as a and
 /// b are: laying the face on them would scale it, and on saddles the error feeds itself until the map folds over.
-Complex third_place(Complex a, Complex b, double edge, Complex turn) {
-    const double apart = std::abs(b - a), to_a = std::abs(a), to_b = std::abs(b);
-    if (std::abs(apart - edge) <= 1e-9 * edge || !(to_a > 0) || !(to_b > 0))
-        return a + turn * (b - a);
-    const double along = (edge * edge + to_a * to_a - to_b * to_b) / (2 * edge), square = to_a * to_a - along * along;
+Vector third_place(Vector a, Vector b, double edge, Vector turn) {
+    const Vector ab = b - a;
+    const double apart = ab.size(), a_norm = a.norm(), b_norm = b.norm();
+    if (std::abs(apart - edge) <= 1e-9 * edge || !(a_norm > 0) || !(b_norm > 0))
+        return a + turn * ab;
+    const double along = (edge * edge + a_norm - b_norm) / (2 * edge), square = a_norm - along * along;
     // a is at 0, b at edge; where no such triangle exists, the nearer of the two is passed on the way to the other.
-    Complex centre(to_a < to_b ? -to_a : edge + to_b, 0);
+    Vector centre;
     if (square > 0)
-        centre = {along, std::imag(-a * std::conj(b - a)) < 0 ? -std::sqrt(square) : std::sqrt(square)};
-    const Complex c = edge * turn - centre;
-    if (!(std::abs(c) > 0))
-        return 0;
-    const Complex from_a = c / -centre, from_b = c / (edge - centre);
-    const double turn_a = std::abs(std::arg(from_a)), turn_b = std::abs(std::arg(from_b));
+        centre = {along, a.x * ab.y - a.y * ab.x < 0 ? -std::sqrt(square) : std::sqrt(square)};
+    else
+        centre = {a_norm < b_norm ? -std::sqrt(a_norm) : edge + std::sqrt(b_norm), 0};
+    const Vector c = edge * turn - centre, to_b = {edge - centre.x, -centre.y};
+    const double c_norm = c.norm();
+    if (!(c_norm > 0))
+        return {};
+    // How c's direction is turned from those of a and b, as seen from the centre.
+    const Vector from_a = c * Vector{-centre.x, centre.y}, from_b = c * to_b.mirrored();
+    const double turn_a = std::abs(std::atan2(from_a.y, from_a.x)), turn_b = std::abs(std::atan2(from_b.y, from_b.x));
     const double share = turn_a + turn_b > 0 ? turn_a / (turn_a + turn_b) : 0.5;
-    const Complex direction = (1 - share) * a / to_a * from_a / std::abs(from_a) + share * b / to_b * from_b / std::abs(from_b);
-    return std::abs(direction) > 0 ? std::abs(c) / std::abs(direction) * direction : a + turn * (b - a);
+    const Vector direction =
+        (1 - share) / std::sqrt(a_norm * from_a.norm()) * (a * from_a) + share / std::sqrt(b_norm * from_b.norm()) * (b * from_b);
+    const double norm = direction.norm();
+    return norm > 0 ? std::sqrt(c_norm / norm) * direction : a + turn * ab;
 }
 
 }  // namespace
 
-LogMap::LogMap(const Surface& surface, const std::vector<int>& partner)
-    : partner_(partner),
-      triangulation_(intrinsic_triangulation(surface)),
-      outgoing_(surface.vertex_count(), none),
-      turn_(surface.halfedge_count()) {
-    make_delaunay(triangulation_);
-    for (int h = 0; h < surface.halfedge_count(); ++h) {
-        int& chosen = outgoing_[origin(h)];
-        if (chosen == none || (triangulation_.twin[h] == none && triangulation_.twin[chosen] != none))
+LogMap::LogMap(const Surface& surface, const std::vector<int>& partner) : partner_(partner) {
+    IntrinsicTriangulation triangulation = intrinsic_triangulation(surface);
+    make_delaunay(triangulation);
+    const int vertices = surface.vertex_count();
+    const auto origin = [&](int h) { return triangulation.faces[h / 3][h % 3]; };
+    const auto length = [&](int h) { return triangulation.lengths[h / 3][h % 3]; };
+    std::vector<int> outgoing(vertices, none);
+    for (int h = 0; h < surface.halfedge_count(); ++h)
+        if (int& chosen = outgoing[origin(h)];
+            chosen == none || (triangulation.twin[h] == none && triangulation.twin[chosen] != none))
             chosen = h;
-        const double along = length(h), back = length(Surface::prev(h)), size = along * along;
-        // The angle at h's origin is the one opposite the next halfedge.
-        const OppositeAngle angle = opposite_angle(triangulation_, Surface::next(h));
-        if (size > 0 && back > 0)
-            turn_[h] = {angle.cosine / size, angle.sine / size};
+    corners_.reserve(surface.halfedge_count());
+    corner_first_.assign(1, 0);
+    closed_.assign(vertices, 0);
+    for (int v = 0; v < vertices; ++v) {
+        for (int h = outgoing[v]; h != none;) {
+            const int next = Surface::next(h), prev = Surface::prev(h);
+            Corner& corner = corners_.emplace_back();
+            corner.target = origin(next);
+            corner.third = origin(prev);
+            corner.length = length(h);
+            const double size = corner.length * corner.length;
+            const OppositeAngle angle = opposite_angle(triangulation, next);  // opposite the next halfedge: at v
+            if (size > 0 && length(prev) > 0) {
+                corner.turn_x = angle.cosine / size;
+                corner.turn_y = angle.sine / size;
+            }
+            h = triangulation.twin[prev];
+            if (h == outgoing[v]) {
+                closed_[v] = 1;
+                break;
+            }
+        }
+        corner_first_.push_back(static_cast<int>(corners_.size()));
     }
 }
 
@@ -67,57 +109,50 @@ void LogMap::unfold(const std::vector<int>& vertices, const std::vector<int>& lo
     laid.assign(count, 0);
     queue.clear();
     place.assign(count, 0);
-    const auto vote = [&](int v, Complex at) {
-        if (v == none || laid[v])
-            return;
-        sum[v] += at;
-        reach[v] += std::abs(at);
+    const auto vote = [&](int v, Vector at) {
+        sum[v] += Complex(at.x, at.y);
+        const double norm = at.norm();
+        reach[v] += std::sqrt(norm);
         if (++votes[v] > 1)
             return;
-        queue.emplace_back(std::norm(at), v);
+        queue.emplace_back(norm, v);
         std::push_heap(queue.begin(), queue.end(), std::greater<>());
     };
+    const auto corners_of = [&](int vertex) {
+        return std::span(corners_).subspan(corner_first_[vertex], corner_first_[vertex + 1] - corner_first_[vertex]);
+    };
     const auto lay_fan = [&](int vertex) {
-        const int start = outgoing_[vertex];
+        const auto opening = [](const Corner& c) { return std::atan2(c.turn_y, c.turn_x); };
         double total = 0;
-        int h = start;
-        while (h != none) {
-            total += std::arg(turn_[h]);
-            h = triangulation_.twin[Surface::prev(h)];
-            if (h == start)
-                break;
-        }
-        const double scale = h == none || total <= 0 ? 1 : 2 * std::numbers::pi / total;
+        for (const Corner& c : corners_of(vertex)) total += opening(c);
+        const double scale = closed_[vertex] && total > 0 ? 2 * std::numbers::pi / total : 1;
         double angle = 0;
-        h = start;
-        while (h != none) {
-            vote(local[target(h)], std::polar(length(h), angle));
-            angle += scale * std::arg(turn_[h]);
-            const int last = Surface::prev(h);
-            h = triangulation_.twin[last];
-            if (h == none)
-                vote(local[origin(last)], std::polar(length(last), angle));
-            if (h == start)
-                break;
+        const auto vote_at = [&](int v, double length) {
+            if (local[v] != none && !laid[local[v]])
+                vote(local[v], length * Vector{std::cos(angle), std::sin(angle)});
+        };
+        for (const Corner& c : corners_of(vertex)) {
+            vote_at(c.target, c.length);
+            angle += scale * opening(c);
+            if (!closed_[vertex] && &c == &corners_of(vertex).back())
+                vote_at(c.third, c.length * Vector{c.turn_x, c.turn_y}.size());
         }
     };
     // Faces of the vertex with one corner left to lay.
     const auto unfold_around = [&](int vertex) {
-        const int start = outgoing_[vertex], i = local[vertex];
-        int h = start;
-        while (h != none) {
-            const int last = Surface::prev(h);
-            const int j = local[target(h)], m = local[origin(last)];
-            if (j != none && m != none && laid[j] != laid[m] && turn_[h] != 0.0) {
-                const double edge = length(h);
-                if (laid[j])
-                    vote(m, third_place(place[i], place[j], edge, turn_[h]));
-                else
-                    vote(j, third_place(place[i], place[m], edge * std::abs(turn_[h]), 1.0 / turn_[h]));
-            }
-            h = triangulation_.twin[last];
-            if (h == start)
-                break;
+        const int i = local[vertex];
+        for (const Corner& c : corners_of(vertex)) {
+            const int j = local[c.target], m = local[c.third];
+            if (j == none || m == none || laid[j] == laid[m])
+                continue;
+            const Vector turn{c.turn_x, c.turn_y};
+            const double norm = turn.norm();
+            if (!(norm > 0))
+                continue;
+            if (laid[j])
+                vote(m, third_place(plain(place[i]), plain(place[j]), c.length, turn));
+            else
+                vote(j, third_place(plain(place[i]), plain(place[m]), c.length * std::sqrt(norm), 1 / norm * turn.mirrored()));
         }
     };
     const auto settle = [&](int v, Complex at) {
@@ -139,23 +174,19 @@ void LogMap::unfold(const std::vector<int>& vertices, const std::vector<int>& lo
         std::pop_heap(queue.begin(), queue.end(), std::greater<>());
         const int v = queue.back().second;
         queue.pop_back();
-        if (!laid[v])
-            settle(v, std::abs(sum[v]) > 0 ? reach[v] / (votes[v] * std::abs(sum[v])) * sum[v] : sum[v]);
+        if (laid[v])
+            continue;
+        const double size = plain(sum[v]).size();
+        settle(v, size > 0 ? reach[v] / (votes[v] * size) * sum[v] : sum[v]);
     }
 
     for (std::size_t v = 0; v < count; ++v) {
         if (laid[v])
             continue;
-        const int start = outgoing_[vertices[v]];
-        int h = start;
-        while (h != none) {
-            for (int w : {local[target(h)], local[origin(Surface::prev(h))]})
+        for (const Corner& c : corners_of(vertices[v]))
+            for (int w : {local[c.target], local[c.third]})
                 if (w != none && laid[w])
                     place[v] = place[w];
-            h = triangulation_.twin[Surface::prev(h)];
-            if (h == start)
-                break;
-        }
     }
 }
 

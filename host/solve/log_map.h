@@ -35,15 +35,19 @@ public:
                 std::vector<std::complex<double>>& place) const;
 
 private:
-    double length(int halfedge) const { return triangulation_.lengths[halfedge / 3][halfedge % 3]; }
-    int origin(int halfedge) const { return triangulation_.faces[halfedge / 3][halfedge % 3]; }
-    int target(int halfedge) const { return origin(Surface::next(halfedge)); }
+    /// What the layout asks of a corner between two edges that leave a vertex. A vertex's corners stand together, in
+    /// counter-clockwise order, since memory is what a map waits for.
+    struct Corner {
+        int target = none;              ///< where the first edge goes
+        int third = none;               ///< where the second one goes
+        double length = 0;              ///< of the first
+        double turn_x = 0, turn_y = 0;  ///< second = turn x first, in the face's plane; 0 without length
+    };
 
     const std::vector<int>& partner_;
-    IntrinsicTriangulation triangulation_;
-    std::vector<int> outgoing_;  ///< per vertex: a halfedge that leaves it, on a border the border's; none without a face
-    std::vector<std::complex<double>>
-        turn_;  ///< per halfedge: prev's reversed edge = turn x this edge, in the face's plane; 0 without length
+    std::vector<int> corner_first_;  ///< per vertex + 1
+    std::vector<Corner> corners_;
+    std::vector<char> closed_;  ///< per vertex: corners go all around it
 };
 
 }  // namespace pvg

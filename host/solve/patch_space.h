@@ -4,16 +4,12 @@
 #include <vector>
 
 #include "curves/domain.h"
-#include "mesh/border_points.h"
 #include "solve/energy_form.h"
 #include "solve/knots.h"
 #include "solve/log_map.h"
 #include "solve/voronoi.h"
 
 namespace pvg {
-
-/// Which border edges of a domain have given ends, and which pairs of them are the two sides of a sharp Poisson curve.
-BorderConditions border_conditions(const Domain& domain);
 
 /// Read-only once made. V vertices, N cells. The domain and the knots must outlive it.
 class PatchSpace : public EnergyForm {
@@ -33,7 +29,6 @@ public:
 private:
     void join_cells(const Voronoi& voronoi);
     void sort_vertices(const Voronoi& voronoi);
-    void integrate_sources();
 };
 
 }  // namespace pvg

@@ -36,9 +36,9 @@ void subtract(GivenValues& from, const GivenValues& other) {
 
 }  // namespace
 
-Responses::Responses(const Domain& domain, const Knots& knots, const System& system, const EnergyForm& form, const Table& table,
-                     const Eigen::MatrixXd& unbounded)
-    : domain_(domain), knots_(knots), system_(system), form_(form), table_(table), first_lambda_(unbounded) {
+Responses::Responses(const Domain& domain, const Knots& knots, const System& system, const GalerkinMatrix& matrix,
+                     const Table& table, const Eigen::MatrixXd& unbounded)
+    : domain_(domain), knots_(knots), system_(system), matrix_(matrix), table_(table), first_lambda_(unbounded) {
     first_lambda_.conservativeResize(whole_blocks(unbounded.rows()), Eigen::NoChange);
     first_lambda_.bottomRows(first_lambda_.rows() - unbounded.rows()).setZero();
     find_same_stops();
@@ -91,7 +91,7 @@ void Responses::find_parts() {
 
 Eigen::MatrixXd Responses::solve(const GivenValues& given) const {
     Eigen::MatrixXd lambda = system_.solve(domain_, given);
-    minimise_energy(form_, table_, system_, given.source, response_options, lambda);
+    minimise_energy(matrix_, system_, given.source, response_options, lambda);
     return lambda;
 }
 

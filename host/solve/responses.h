@@ -12,7 +12,7 @@
 
 #include "curves/domain.h"
 #include "pvg/table.h"
-#include "solve/energy_form.h"
+#include "solve/galerkin_matrix.h"
 #include "solve/knots.h"
 #include "solve/system.h"
 
@@ -24,7 +24,7 @@ public:
     using Stop = std::pair<int, int>;  ///< (control, stop)
 
     /// unbounded: lambda as solved for the values that the domain's controls have (SolvedDomain::unbounded).
-    Responses(const Domain& domain, const Knots& knots, const System& system, const EnergyForm& form, const Table& table,
+    Responses(const Domain& domain, const Knots& knots, const System& system, const GalerkinMatrix& matrix, const Table& table,
               const Eigen::MatrixXd& unbounded);
 
     /// Solves for the columns of these stops that are missing, all together. Stops that enter with the same weights (colour and
@@ -59,7 +59,7 @@ private:
     const Domain& domain_;
     const Knots& knots_;
     const System& system_;
-    const EnergyForm& form_;
+    const GalerkinMatrix& matrix_;
     const Table& table_;
     Eigen::MatrixXd first_lambda_;             // N x C
     std::map<Stop, Stop> same_as_;             // the first stop that enters with the same weights

@@ -92,7 +92,7 @@ std::vector<Control> other_controls(const Domain& domain, unsigned seed) {
 /// Recolouring by responses against a back-substitution: the same new values, the same mesh, the same threads.
 void recolour(Bench& bench, Json& result) {
     const SolvedDomain& solved = bench.build.domains[bench.largest];
-    Responses responses(bench.domain(), solved.knots, solved.system, solved.form, bench.build.program.fields[bench.largest].table,
+    Responses responses(bench.domain(), solved.knots, solved.system, solved.matrix, bench.build.program.fields[bench.largest].table,
                         solved.unbounded);
     say(bench, "responses");
     int columns = 0;
@@ -102,7 +102,7 @@ void recolour(Bench& bench, Json& result) {
     Domain other = bench.domain();
     other.controls = other_controls(other, 1);
     apply_controls(other);
-    const LinearSystem system = linear_system(other, solved.form);
+    const LinearSystem system = linear_system(other, energy_form(other));
     Cholmod cholmod(system.A);
     const double refactor = seconds_of([&] { cholmod.refactor(); });
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> eigen(system.A);

@@ -62,12 +62,13 @@ protected:
           space(domain, knots, voronoi),
           system(domain, knots, voronoi),
           table(local_basis(space, {.threads = 2})),
+          matrix(galerkin_matrix(space, table, static_cast<int>(knots.vertex.size()), 2)),
           unbounded(solve(domain)),
-          responses(domain, knots, system, space, table, unbounded) {}
+          responses(domain, knots, system, matrix, table, unbounded) {}
 
     Eigen::MatrixXd solve(const Domain& d) const {
         Eigen::MatrixXd lambda = system.solve(d);
-        minimise_energy(space, table, system, given_values(d, knots.vertex).source, exact, lambda);
+        minimise_energy(matrix, system, given_values(d, knots.vertex).source, exact, lambda);
         return lambda;
     }
     /// From a solve of its own, bounds as a build has them.
@@ -104,6 +105,7 @@ protected:
     PatchSpace space;
     System system;
     Table table;
+    GalerkinMatrix matrix;
     Eigen::MatrixXd unbounded;
     Responses responses;
 };
