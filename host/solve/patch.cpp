@@ -56,9 +56,19 @@ void PatchSolver::gather(int cell) {
         }
     }
 
+    // A patch that is round answers more evenly than one that follows its outermost cells, and is a third smaller.
+    const Surface& surface = space_.domain.surface;
+    const Point& centre = surface.point(space_.knots.vertex[cell]);
+    double farthest = 0;
+    for (int c : cells_)
+        if (ring_of_cell_[c] <= options_.rings)
+            farthest = std::max(farthest, (surface.point(space_.knots.vertex[c]) - centre).norm());
     queue_.clear();
     for (int c : cells_)
         for (int i = space_.cell_first[c]; i < space_.cell_first[c + 1]; ++i) {
+            if (ring_of_cell_[c] > options_.rings &&
+                (surface.point(space_.cell_vertices[i]) - centre).norm() > options_.reach * farthest)
+                continue;
             queue_.push_back(space_.cell_vertices[i]);
             local_[queue_.back()] = waiting;
         }

@@ -20,7 +20,8 @@ namespace pvg {
 
 struct PatchOptions {
     int rings = 2;        ///< cells whose knots are fitted
-    int outer_rings = 1;  ///< cells beyond them that belong to the patch
+    int outer_rings = 1;  ///< cells beyond them that belong to the patch,
+    double reach = 1.2;   ///< as far as this many times the distance in space of the farthest fitted knot
     int degree = 5;       ///< of the harmonic polynomials
     int list = 24;        ///< most coefficients of a list, sources included; a multiple of 4
     int round_down = 16;  ///< lists this long are cut to a multiple of 4
